@@ -30,22 +30,30 @@ static void* read_file(const char* path, size_t* size) {
   return bytes;
 }
 
-/* Plays the model's clip at 30 frames a second. */
-static sc_status play(sc_character* character, gltf_character* model) {
-  const sc_asset* const asset = sc_character_asset(character);
-  const sc_part_contact* contacts = NULL;
+/* Plays the file's clip at 30 frames a second. */
+static sc_status play(const sc_model* model, sc_body* body, gltf_character* file) {
+  const sc_asset* const asset = sc_get_asset(model);
+  const double metres = sc_asset_get_info(asset).metres_per_unit;
+  sc_penetrations found;
   sc_status status = {SC_OK, SC_FIELD_NONE};
-  size_t count = 0, i;
   sc_pose pose = {0};
+  const sc_bone* const joints = gltf_joints(file, &pose.bone_count);
+  size_t i;
   int frame;
-  gltf_joints(model, &pose.bone_count);
   pose.bone_layout = SC_COLUMNS_4X4;
-  for (frame = 0; frame <= 30 * gltf_duration(model) && status.code == SC_OK; ++frame) {
-    pose.bones = gltf_palette(model, frame / 30.0);
-    status = sc_character_contacts(character, &pose, &contacts, &count);
-    for (i = 0; i < count; ++i) {
-      printf("frame %d: %s in %s\n", frame, sc_asset_part(asset, contacts[i].part_a).name,
-             sc_asset_part(asset, contacts[i].part_b).name);
+  for (frame = 0; frame <= 30 * gltf_duration(file) && status.code == SC_OK; ++frame) {
+    pose.bones = gltf_palette(file, frame / 30.0);
+    status = sc_set_pose(body, &pose, NULL);
+    if (status.code == SC_OK) {
+      status = sc_find_penetrations(body, NULL, NULL, &found);
+    }
+    for (i = 0; status.code == SC_OK && i < found.count; ++i) {
+      const sc_penetration* const p = &found.items[i];
+      printf("frame %d: %s in %s, %.0f mm; move %s by (%.3f, %.3f, %.3f)\n", frame,
+             sc_asset_part(asset, p->part).name, sc_asset_part(asset, p->other).name,
+             1000.0 * metres * p->measures.depth, p->joint == SC_NO_JOINT ? "nothing" : joints[p->joint].name,
+             (double)(p->distance * p->direction.x), (double)(p->distance * p->direction.y),
+             (double)(p->distance * p->direction.z));
     }
   }
   return status;
@@ -53,10 +61,10 @@ static sc_status play(sc_character* character, gltf_character* model) {
 
 int main(int argc, char** argv) {
   char message[256];
-  sc_character* character = NULL;
-  gltf_character* model;
-  const sc_bone* joints;
-  size_t size = 0, joint_count = 0;
+  sc_model_def def = {0};
+  sc_model* model = NULL;
+  sc_body* body = NULL;
+  gltf_character* file;
   sc_status status;
   void* bytes;
 
@@ -64,30 +72,35 @@ int main(int argc, char** argv) {
     fputs("usage: c_api ASSET.sphc MODEL.glb\n", stderr);
     return 2;
   }
-  bytes = read_file(argv[1], &size);
+  bytes = read_file(argv[1], &def.size);
   if (bytes == NULL) {
     fprintf(stderr, "c_api: error: %s: cannot be read\n", argv[1]);
     return 3;
   }
-  model = gltf_open(argv[2], message, sizeof message);
-  if (model == NULL) {
+  file = gltf_open(argv[2], message, sizeof message);
+  if (file == NULL) {
     fprintf(stderr, "c_api: error: %s\n", message);
     free(bytes);
     return 3;
   }
-  joints = gltf_joints(model, &joint_count);
-  status = sc_character_create(SC_ABI_VERSION, bytes, size, joints, joint_count, SC_COLUMNS_4X4, &character, message,
-                               sizeof message);
-  free(bytes); /* the character has a copy */
+  def.data = bytes;
+  def.joints = gltf_joints(file, &def.joint_count);
+  def.inverse_bind_layout = SC_COLUMNS_4X4;
+  status = sc_create_model(SC_ABI_VERSION, &def, &model, message, sizeof message);
+  free(bytes); /* the model has a copy */
   if (status.code != SC_OK) {
     fprintf(stderr, "c_api: error: %s: %s\n", argv[1], message);
   } else {
-    status = play(character, model);
+    status = sc_create_body(model, NULL, &body);
+    if (status.code == SC_OK) {
+      status = play(model, body, file);
+    }
     if (status.code != SC_OK) {
       fprintf(stderr, "c_api: error: %s: %s\n", sc_field_name(status.field), sc_code_text(status.code));
     }
   }
-  sc_character_destroy(character);
-  gltf_close(model);
+  sc_destroy_body(body);
+  sc_destroy_model(model);
+  gltf_close(file);
   return status.code == SC_OK ? 0 : 3;
 }

@@ -6,50 +6,34 @@
 #include "gltf_pose.h"
 #include "spherechain/spherechain.h"
 
-static void check(spherechain::Status status, const char* message) {
-  if (status != SC_OK) throw std::runtime_error(message);
-}
+[[noreturn]] static void fail(const char* message) { throw std::runtime_error(message); }
 
-static void play(const std::vector<char>& file, const samples::GltfCharacter& model) {
+static void play(const std::vector<char>& file, const samples::GltfCharacter& rig) {
   // [hello]
-  const std::vector<spherechain::Bone> joints = model.joints();  // your skeleton: names and inverse bind matrices
-  spherechain::Character character;                              // allocates here, never in a frame
-  char message[256];
-  const spherechain::Status made =
-      character.create(file.data(), file.size(), joints.data(), joints.size(), SC_COLUMNS_4X4, message, sizeof message);
-  check(made, message);
-  const float metres = sc_asset_get_info(&character.asset()).metres_per_unit;
-  check(character.check_rest(samples::pose_of(model.rest_palette()), message, sizeof message), message);
+  const std::vector<spherechain::Bone> joints = rig.joints();  // your skeleton: names and inverse bind matrices
+  spherechain::Model model(file.data(), file.size(), joints.data(), joints.size(), SC_COLUMNS_4X4);
+  if (!model || model.check_rest(samples::pose_of(rig.rest_palette())) != SC_OK) fail(model.message());
+  spherechain::Body body(model);  // allocates here, never in a frame
 
-  for (int frame = 0; frame < model.frame_count(0, 30); ++frame) {
-    const samples::Palette palette = model.palette(0, frame / 30.0);  // what your skinning shader gets
-    const spherechain::Pose pose{palette[0].data(), palette.size(), SC_COLUMNS_4X4};
-
-    const spherechain::Penetration* found = nullptr;
-    std::size_t count = 0;
-    check(character.penetrations(pose, found, count), "the palette does not fit");
-    for (std::size_t i = 0; i < count; ++i) {
-      if (found[i].kind != SC_CLASS_PENETRATION) continue;  // folds at joints, touches ...
-      const spherechain::Vec3 out = found[i].direction;     // the way that the part must go
-      std::printf("frame %d: %s in %s, %.0f mm; out along (%.2f, %.2f, %.2f)\n", frame,
-                  character.part_name(found[i].part), character.part_name(found[i].other),
-                  1000 * metres * found[i].measures.depth, out.x, out.y, out.z);
+  for (int frame = 0; frame < rig.frame_count(0, 30); ++frame) {
+    const samples::Palette palette = rig.palette(0, frame / 30.0);  // what your skinning shader gets
+    if (body.set_pose(samples::pose_of(palette)) != SC_OK) fail("the palette does not fit");
+    for (const spherechain::Penetration& p : body.penetrations()) {  // faults alone: no folds at joints, no touches
+      const char* const joint = p.joint == SC_NO_JOINT ? "nothing" : joints[p.joint].name;
+      const spherechain::Vec3 way = p.direction;  // moved by `distance` along it, the part is free
+      std::printf("frame %d: %s in %s, %.0f mm; move %s by (%.3f, %.3f, %.3f)\n", frame, model.part_name(p.part),
+                  model.part_name(p.other), model.millimetres(p.measures.depth), joint, p.distance * way.x,
+                  p.distance * way.y, p.distance * way.z);
     }
   }
   // [/hello]
 }
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fputs("usage: hello ASSET.sphc MODEL.glb\n", stderr);
-    return 2;
-  }
+  if (argc != 3) return std::fputs("usage: hello ASSET.sphc MODEL.glb\n", stderr), 2;
   try {
-    const std::vector<char> file = samples::read_file(argv[1]);
-    play(file, samples::GltfCharacter(argv[2]));
+    play(samples::read_file(argv[1]), samples::GltfCharacter(argv[2]));
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "hello: error: %s\n", error.what());
-    return 3;
+    return std::fprintf(stderr, "hello: error: %s\n", error.what()), 3;
   }
-  return 0;
 }

@@ -12,9 +12,8 @@ using namespace spherechain;
 
 namespace {
 
-void check(Status status, const std::string& what) {
-  if (status != SC_OK)
-    throw std::runtime_error(what + ": " + sc_field_name(status.field) + ": " + sc_code_text(status.code));
+void check(Status status) {
+  if (status != SC_OK) throw std::runtime_error(std::string(field_name(status)) + ": " + code_text(status));
 }
 
 // The asset's vertices are those of the file, buffer by buffer. Another order would give nonsense and no error, so the
@@ -43,43 +42,25 @@ std::vector<float> skin(const Asset& asset, const samples::GltfCharacter& model,
   return vertices;
 }
 
-std::size_t count_touching_spheres(const Asset& asset, const Pose& pose) {
-  std::vector<Sphere> spheres(sc_asset_get_info(&asset).sphere_count);
-  RefitJob refit;
-  refit.asset = &asset;
-  refit.pose = pose;
-  refit.spheres = spheres.data();
-  refit.sphere_capacity = spheres.size();
-  check(refit.run(), "refit");
-  DetectJob detect;  // no list of pairs: it counts
-  detect.asset = &asset;
-  detect.spheres = spheres.data();
-  detect.sphere_count = spheres.size();
-  check(detect.run(), "detect");
-  return detect.pair_count;
-}
+void play(const std::vector<char>& file, const samples::GltfCharacter& clips) {
+  const Model model(file.data(), file.size(), nullptr, 0, SC_LAYOUT_UNSET);
+  if (!model) throw std::runtime_error(model.message());
+  check_buffers(model.asset(), clips);
+  Body body(model);
 
-void play(const std::vector<char>& file, const samples::GltfCharacter& model) {
-  Character character;
-  char message[256];
-  if (character.create(file.data(), file.size(), nullptr, 0, SC_LAYOUT_UNSET, message, sizeof message) != SC_OK) {
-    throw std::runtime_error(message);
-  }
-  const Asset& asset = character.asset();
-  check_buffers(asset, model);
-
-  for (int frame = 0; frame < model.frame_count(0, 5); ++frame) {
-    const std::vector<float> vertices = skin(asset, model, model.palette(0, frame / 5.0));
+  for (int frame = 0; frame < clips.frame_count(0, 5); ++frame) {
+    const std::vector<float> vertices = skin(model.asset(), clips, clips.palette(0, frame / 5.0));
     Pose pose;
     pose.vertices = vertices.data();
     pose.vertex_count = vertices.size() / 3;
-    const PartContact* contacts = nullptr;
-    std::size_t count = 0;
-    check(character.contacts(pose, contacts, count), "contacts");
-    std::printf("frame %d: %zu pairs of spheres, %zu pairs of body parts\n", frame, count_touching_spheres(asset, pose),
-                count);
-    for (std::size_t i = 0; i < count; ++i) {
-      std::printf("  %s in %s\n", character.part_name(contacts[i].part_a), character.part_name(contacts[i].part_b));
+    check(body.set_pose(pose));
+    const SpherePairs spheres = body.sphere_pairs();
+    check(body.status());
+    const Contacts contacts = body.contacts();
+    check(body.status());
+    std::printf("frame %d: %zu pairs of spheres, %zu pairs of body parts\n", frame, spheres.total, contacts.part_count);
+    for (const PartContact& contact : contacts) {
+      std::printf("  %s in %s\n", model.part_name(contact.part_a), model.part_name(contact.part_b));
     }
   }
 }

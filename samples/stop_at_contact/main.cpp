@@ -16,31 +16,20 @@ namespace {
 constexpr double kFrame = 1.0 / 30;
 constexpr int kHalvings = 7;  // of a frame: to a quarter of a millisecond
 
-void check(Status status, const char* message) {
-  if (status != SC_OK) throw std::runtime_error(message);
-}
-
 class Player {
  public:
-  Player(const std::vector<char>& file, const samples::GltfCharacter& model) : model_(model) {
-    const std::vector<Bone> joints = model.joints();
-    char message[256];
-    check(character_.create(file.data(), file.size(), joints.data(), joints.size(), SC_COLUMNS_4X4, message,
-                            sizeof message),
-          message);
-  }
+  Player(const Model& model, const samples::GltfCharacter& clips) : model_(model), clips_(clips), body_(model) {}
 
   // Of the contacts that this sample watches, the one of the most triangles at this time of the clip; or null.
   const PartContact* worst_contact(double seconds) {
-    const samples::Palette palette = model_.palette(0, seconds);
-    const PartContact* contacts = nullptr;
-    std::size_t count = 0;
-    check(character_.contacts(samples::pose_of(palette), contacts, count), "the palette does not fit");
+    body_.set_pose(samples::pose_of(clips_.palette(0, seconds)));
+    const Contacts contacts = body_.contacts();
+    if (body_.status() != SC_OK) throw std::runtime_error("the palette does not fit");
     ++queries;
     const PartContact* worst = nullptr;
-    for (std::size_t i = 0; i < count; ++i) {
-      const bool is_worse = worst == nullptr || contacts[i].triangle_pairs > worst->triangle_pairs;
-      if (is_worse && is_watched(contacts[i])) worst = &contacts[i];
+    for (const PartContact& contact : contacts) {
+      const bool is_worse = worst == nullptr || contact.triangle_pairs > worst->triangle_pairs;
+      if (is_worse && is_watched(contact)) worst = &contact;
     }
     return worst;
   }
@@ -54,30 +43,31 @@ class Player {
     return clear;
   }
 
-  const char* part_name(std::uint32_t part) const { return character_.part_name(part); }
-
   std::size_t queries = 0;
 
  private:
   // A hand in anything but its own forearm: there it is a fold of the wrist.
   bool is_watched(const PartContact& contact) const {
-    const BodyPart a = sc_asset_part(&character_.asset(), contact.part_a);
-    const BodyPart b = sc_asset_part(&character_.asset(), contact.part_b);
+    const BodyPart a = model_.part(contact.part_a), b = model_.part(contact.part_b);
     const auto is = [](const BodyPart& part, const char* what) { return std::strstr(part.name, what) != nullptr; };
     const bool is_wrist = a.side == b.side && (is(a, "forearm") || is(b, "forearm"));
     return contact.part_a != contact.part_b && (is(a, "hand") || is(b, "hand")) && !is_wrist;
   }
 
-  const samples::GltfCharacter& model_;
-  Character character_;
+  const Model& model_;
+  const samples::GltfCharacter& clips_;
+  Body body_;
 };
 
-void play(const std::vector<char>& file, const samples::GltfCharacter& model) {
-  Player player(file, model);
+void play(const std::vector<char>& file, const samples::GltfCharacter& clips) {
+  const std::vector<Bone> joints = clips.joints();
+  const Model model(file.data(), file.size(), joints.data(), joints.size(), SC_COLUMNS_4X4);
+  if (!model) throw std::runtime_error(model.message());
+  Player player(model, clips);
   double shown = -1;  // the moment of the clip on the screen; none yet
   bool is_stopped = false;
   std::size_t frames = 0, held = 0, stops = 0;
-  for (double now = 0; now <= model.duration(0); now += kFrame, ++frames) {
+  for (double now = 0; now <= clips.duration(0); now += kFrame, ++frames) {
     const PartContact* const contact = player.worst_contact(now);
     if (contact == nullptr) {
       shown = now;
@@ -88,7 +78,7 @@ void play(const std::vector<char>& file, const samples::GltfCharacter& model) {
     if (is_stopped || shown < 0) continue;
     const Vec3 low = contact->low, high = contact->high;
     const std::string who =
-        std::string(player.part_name(contact->part_a)) + " would meet " + player.part_name(contact->part_b);
+        std::string(model.part_name(contact->part_a)) + " would meet " + model.part_name(contact->part_b);
     shown = player.stop_between(shown, now);
     is_stopped = true;
     ++stops;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Opening, what an asset is asked, edits of filters, tables, and the short way.
+// Opening, what an asset is asked, edits of filters, tables, and binding.
 #include <algorithm>
 #include <cstring>
 
@@ -56,17 +56,6 @@ Status edit(Case& c, Filter& filter, sc_code& wanted) {
       wants(true);
       return sc_reset_filter(&c.asset, &filter);
   }
-}
-
-// Joints with the asset's names, and sometimes one that differs.
-std::vector<Bone> draw_joints(Case& c) {
-  std::vector<Bone> joints;
-  for (std::size_t i = 0; i < c.view().bone_count(); ++i) {
-    joints.push_back(sc_asset_bone(&c.asset, i));
-    if (c.random.one_in(4)) joints.back().inverse_bind = nullptr;
-  }
-  if (!joints.empty() && c.random.one_in(3)) joints[c.random.up_to(joints.size() - 1)].name = nullptr;
-  return joints;
 }
 
 }  // namespace
@@ -182,11 +171,11 @@ void fuzz_prepare(Case& c) {
   run_twice(c, call);
 }
 
-void fuzz_character(Case& c) {
+void fuzz_binding(Case& c) {
   if (!draw_asset(c) || sc_skin_table_words(&c.asset) > (std::size_t{1} << 18)) {
     return;
   }
-  const std::vector<Bone> joints = draw_joints(c);
+  const std::vector<Bone> joints = draw_engine_joints(c);
   char message[160] = "";
   Pose pose;
   draw_bones(c, pose);
@@ -210,23 +199,6 @@ void fuzz_character(Case& c) {
   }
   (bound == SC_OK ? c.tally.ran : c.tally.refused) += 1;
   c.expect(c.arena.kept_but({}), "binding writes into what it reads");
-
-  sc_character* character = nullptr;
-  const Bytes bytes = c.asset_bytes;
-  const Status made =
-      sc_character_create(SC_ABI_VERSION, bytes.data, bytes.size, joints.empty() ? nullptr : joints.data(),
-                          joints.size(), layout, &character, message, sizeof message);
-  c.expect((made == SC_OK) == (character != nullptr), "a character's status");
-  if (made == SC_OK) {
-    const PartContact* contacts = nullptr;
-    std::size_t count = 0;
-    const Status status = sc_character_contacts(character, &pose, &contacts, &count);
-    c.expect((status == SC_OK) == (c.view().bone_count() > 0), "a character's contacts");
-    for (std::size_t i = 0; i < count; ++i) {
-      c.expect(contacts[i].part_b < c.view().part_count() && contacts[i].triangle_pairs > 0, "a contact of no parts");
-    }
-  }
-  sc_character_destroy(character);
 }
 
 }  // namespace spherechain::test

@@ -190,6 +190,16 @@ void add_vertex_ways(Case& c, Pose& pose, Ways& ways) {
                            [&] { put_askew(c, pose.vertices), c.spoil(SC_MISALIGNED, SC_FIELD_VERTICES); }});
 }
 
+std::vector<Bone> draw_engine_joints(Case& c) {
+  std::vector<Bone> joints;
+  for (std::size_t i = 0; i < c.view().bone_count(); ++i) {
+    joints.push_back(sc_asset_bone(&c.asset, i));
+    if (c.random.one_in(4)) joints.back().inverse_bind = nullptr;
+  }
+  if (!joints.empty() && c.random.one_in(3)) joints[c.random.up_to(joints.size() - 1)].name = nullptr;
+  return joints;
+}
+
 Filter draw_filter(Case& c) {
   Filter filter;
   filter.ignored_words = sc_pair_words(&c.asset);

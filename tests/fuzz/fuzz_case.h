@@ -67,6 +67,8 @@ Enum draw_none(Case& c, std::int32_t end) {
 void draw_bones(Case& c, Pose& pose);
 // False where the asset asks for too many.
 bool draw_vertices(Case& c, Pose& pose);
+// Joints with the names of the asset's bones, and sometimes one that differs.
+std::vector<Bone> draw_engine_joints(Case& c);
 // A sound filter; one that is empty has dirt for its pointers' target.
 Filter draw_filter(Case& c);
 
@@ -121,7 +123,8 @@ void fuzz_open(Case& c);
 void fuzz_accessors(Case& c);
 void fuzz_filter(Case& c);
 void fuzz_prepare(Case& c);
-void fuzz_character(Case& c);
+void fuzz_binding(Case& c);
+void fuzz_model(Case& c);
 void fuzz_refit(Case& c);
 void fuzz_detect(Case& c);
 void fuzz_crowd(Case& c);

@@ -18,12 +18,12 @@ struct Kind {
   const char* name;
   void (*fuzz)(Case& c);
 };
-constexpr Kind kKinds[] = {{"open", fuzz_open},           {"accessors", fuzz_accessors},
-                           {"filter", fuzz_filter},       {"prepare", fuzz_prepare},
-                           {"character", fuzz_character}, {"refit", fuzz_refit},
-                           {"detect", fuzz_detect},       {"crowd", fuzz_crowd},
-                           {"contacts", fuzz_contacts},   {"penetrations", fuzz_penetrations},
-                           {"bodies", fuzz_bodies},       {"steps", fuzz_steps}};
+constexpr Kind kKinds[] = {
+    {"open", fuzz_open},         {"accessors", fuzz_accessors}, {"filter", fuzz_filter},
+    {"prepare", fuzz_prepare},   {"binding", fuzz_binding},     {"model", fuzz_model},
+    {"refit", fuzz_refit},       {"detect", fuzz_detect},       {"crowd", fuzz_crowd},
+    {"contacts", fuzz_contacts}, {"bodies", fuzz_bodies},       {"penetrations", fuzz_penetrations},
+    {"steps", fuzz_steps}};
 constexpr std::size_t kKindCount = sizeof kKinds / sizeof kKinds[0];
 
 bool read_number(int argc, char** argv, int& i, const char* name, std::uint64_t& number) {

@@ -101,8 +101,8 @@ SPHERECHAIN_API sc_status sc_create_body(const sc_model* model, const sc_body_de
 SPHERECHAIN_API void sc_destroy_body(sc_body* body) SC_NOEXCEPT; /* null is fine */
 
 /* The new pose; the old one becomes the pose before. Bones come in the order of the model's joints, and are copied, as
- * morph weights are; vertices are not: they must stay as they are until the pose after the next. `place` moves the bones
- * into the world, where other bodies are; null: they are there. Errors as of a job's pose; SC_BAD_VALUE with
+ * morph weights are; vertices are not: they must stay as they are until the next pose, and for steps until the one after
+ * it. `place` moves the bones into the world, where other bodies are; null: they are there already. Errors as of a job's pose; SC_BAD_VALUE with
  * SC_FIELD_TRANSFORM: `place` is not finite, or the pose has vertices, too. After an error the body has no pose. */
 SPHERECHAIN_API sc_status sc_set_pose(sc_body* body, const sc_pose* pose, const sc_transform* place) SC_NOEXCEPT;
 
@@ -132,15 +132,24 @@ namespace spherechain {
 using BodyDef = sc_body_def;
 using Detail = sc_detail;
 using Query = sc_query;
-using Contacts = sc_contacts;
 using SpherePairs = sc_sphere_pairs;
-using Steps = sc_steps;
 using Ground = sc_ground;
 
 /* For loops; `total` counts what there was no room for, too. */
 struct Penetrations : sc_penetrations {
   const Penetration* begin() const noexcept { return items; }
   const Penetration* end() const noexcept { return items + count; }
+};
+
+/* Loops go over the body parts. */
+struct Contacts : sc_contacts {
+  const PartContact* begin() const noexcept { return parts; }
+  const PartContact* end() const noexcept { return parts + part_count; }
+};
+
+struct Steps : sc_steps {
+  const StepContact* begin() const noexcept { return items; }
+  const StepContact* end() const noexcept { return items + count; }
 };
 
 /* Owns an sc_body. It moves, and does not copy. One that was not made converts to false. Where a question fails, its
@@ -209,6 +218,7 @@ class Body {
     status_ = sc_find_steps(handle_, other.handle_, &query, &out);
     return out;
   }
+  Status bounds(Vec3& low, Vec3& high) noexcept { return status_ = sc_get_bounds(handle_, &low, &high); }
 
  private:
   sc_body* handle_ = nullptr;

@@ -93,11 +93,14 @@ class Model {
   Status check_rest(const Pose& palette) noexcept {
     return sc_check_rest(handle_, &palette, message_, sizeof message_);
   }
+  AssetInfo info() const noexcept { return sc_asset_get_info(&asset()); }
+  uint32_t part_count() const noexcept { return static_cast<uint32_t>(info().part_count); }
+  BodyPart part(uint32_t part) const noexcept { return sc_asset_part(&asset(), part); }
   const char* part_name(uint32_t part) const noexcept { return sc_asset_part(&asset(), part).name; }
   uint32_t part_joint(uint32_t part) const noexcept { return sc_get_part_joint(handle_, part); }
   TriangleOwner triangle(uint32_t number) const noexcept { return sc_get_triangle(handle_, number); }
   /* A length in the units of a pose that has the asset's scale. */
-  float millimetres(float length) const noexcept { return 1000 * length * sc_asset_get_info(&asset()).metres_per_unit; }
+  float millimetres(float length) const noexcept { return 1000 * length * info().metres_per_unit; }
 
  private:
   sc_model* handle_ = nullptr;

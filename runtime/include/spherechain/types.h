@@ -54,7 +54,7 @@ SC_ENUM(sc_code){
     SC_WRONG_SOURCE = 15,       /* these are not the vertices that the asset was baked from */
     SC_NO_SUCH_BONE = 16,       /* the skeleton lacks a bone of the asset */
     SC_OTHER_BIND = 17,         /* a bone's inverse bind matrix, or its place at rest, differs from the asset's */
-    SC_NO_MEMORY = 18,          /* an allocation failed (sc_character_create and HostCrowd only) */
+    SC_NO_MEMORY = 18,          /* an allocation failed (of a model, a body or a HostCrowd) */
     SC_NO_DEVICE = 19,          /* no CUDA device, or no driver for one */
     SC_DEVICE_FAILED = 20,      /* the CUDA device or its driver reported an error */
     SC_DEVICE_TOO_SMALL = 21,   /* the asset does not fit into a block's memory on the CUDA device */
@@ -150,5 +150,7 @@ using Pair = sc_pair;
 using Radius = sc_radius;
 using Target = sc_target;
 using Status = sc_status;
+inline const char* code_text(Status status) noexcept { return sc_code_text(status.code); }
+inline const char* field_name(Status status) noexcept { return sc_field_name(status.field); }
 }  // namespace spherechain
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What a game links: from a palette to contacts by body part, and nothing else. */
-#include <spherechain/character.h>
+#include <spherechain/body.h>
 #include <stdio.h>
 
 static uint64_t bytes[1 << 16];
@@ -8,17 +8,19 @@ static float matrices[12 * 64];
 
 int main(int argc, char** argv) {
   FILE* file = fopen(argc > 1 ? argv[1] : "", "rb");
-  sc_character* character = NULL;
-  const sc_part_contact* parts;
+  sc_model_def def = {0};
+  sc_model* model = NULL;
+  sc_body* body = NULL;
+  sc_contacts found;
   sc_pose pose = {0};
-  size_t size = 0, i, count;
+  size_t i;
   char message[160] = "cannot be read";
   if (file != NULL) {
-    size = fread(bytes, 1, sizeof bytes, file);
+    def.size = fread(bytes, 1, sizeof bytes, file);
     fclose(file);
   }
-  if (sc_character_create(SC_ABI_VERSION, bytes, size, NULL, 0, SC_LAYOUT_UNSET, &character, message, sizeof message)
-          .code != SC_OK) {
+  def.data = bytes;
+  if (sc_create_model(SC_ABI_VERSION, &def, &model, message, sizeof message).code != SC_OK) {
     fprintf(stderr, "%s\n", message);
     return 3;
   }
@@ -29,10 +31,12 @@ int main(int argc, char** argv) {
     matrices[12 * i] = matrices[12 * i + 5] = matrices[12 * i + 10] = 1.0F;
     matrices[12 * i + 3] = 0.5F * (float)i;
   }
-  if (sc_character_contacts(character, &pose, &parts, &count).code != SC_OK) {
+  if (sc_create_body(model, NULL, &body).code != SC_OK || sc_set_pose(body, &pose, NULL).code != SC_OK ||
+      sc_find_contacts(body, NULL, NULL, &found).code != SC_OK) {
     return 1;
   }
-  printf("%zu pairs of body parts\n", count);
-  sc_character_destroy(character);
+  printf("%zu pairs of body parts\n", found.part_count);
+  sc_destroy_body(body);
+  sc_destroy_model(model);
   return 0;
 }

@@ -96,6 +96,37 @@ void call_binding(const Asset& asset, const std::vector<Bone>& joints, const Pos
   expect(sc_check_rest_pose(&asset, &pose, message, sizeof message) == SC_OK, message);
 }
 
+void call_model(const Model& model) {
+  expect(sc_asset_is_open(sc_get_asset(model.handle())) != 0, "the model's asset");
+  expect(model.part_count() > 0 && model.part_name(0) != nullptr && model.part(0).name != nullptr, "the model's parts");
+  expect(model.part_joint(0) < model.info().bone_count, "a part's joint");
+  expect(model.triangle(0).part < model.part_count(), "a triangle's part");
+  expect(model.millimetres(1) > 0, "millimetres");
+  expect(!is_fault(sc_classify(nullptr, nullptr)) && *sc_penetration_class_name(SC_CLASS_FOLD) != '\0', "a class");
+}
+
+// The number of contacts of body parts.
+std::size_t call_body(const Model& model, const Pose& pose) {
+  BodyDef def;
+  def.finds_steps = 1;
+  Body body(model, def), other(model);
+  expect(body.set_pose(pose) == SC_OK && other.set_pose(pose, {{0, 0, 0}, {0, 0, 0, 1}, {1, 1, 1}}) == SC_OK, "poses");
+  const Contacts contacts = body.contacts();
+  for (const PartContact& contact : contacts) expect(model.part_name(contact.part_a) != nullptr, "part names");
+  Query query;
+  query.classes = ~0U;
+  expect(body.penetrations(query).count == contacts.part_count && body.status() == SC_OK, "penetrations");
+  expect(body.contacts(other).part_count >= contacts.part_count && body.status() == SC_OK, "contacts of two");
+  expect(body.penetrations(other, query).count > 0 && body.status() == SC_OK, "penetrations of two");
+  Vec3 low, high;
+  expect(body.bounds(low, high) == SC_OK && low.x < high.x, "bounds");
+  const Ground ground{{1, 0, 0}, high.x, nullptr, nullptr};
+  expect(body.below(ground, query).count > 0 && body.status() == SC_OK, "the ground");
+  expect(body.sphere_pairs().sphere_count == model.info().sphere_count, "sphere pairs");
+  expect(body.set_pose(pose) == SC_OK && body.steps().count >= contacts.part_count, "steps");
+  return contacts.part_count;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -132,20 +163,16 @@ int main(int argc, char** argv) {
   detect.sphere_count = spheres.size();
   expect(refit.run() == SC_OK && detect.run() == SC_OK, "spheres");
 
-  Character character;
-  const PartContact* contacts = nullptr;
-  std::size_t contact_count = 0;
-  expect(
-      character.create(bytes.data(), size, joints.data(), joints.size(), SC_ROWS_3X4, message, sizeof message) == SC_OK,
-      message);
-  expect(character.check_rest(pose, message, sizeof message) == SC_OK, message);
+  Model model(bytes.data(), size, joints.data(), joints.size(), SC_ROWS_3X4);
+  expect(model && model.check_rest(pose) == SC_OK, model.message());
+  if (!model) return failed;
+  call_model(model);
   call_binding(asset, joints, pose);
   call_crowd(asset, pose, detect.pair_count);
   for (std::size_t b = 0; b < info.bone_count; ++b) {  // pull the body apart
     matrices[12 * b + 3] = 0.5F * static_cast<float>(b);
   }
-  expect(character.contacts(pose, contacts, contact_count) == SC_OK, "contacts");
-  expect(contact_count > 0 && character.part_name(contacts[0].part_a) != nullptr, "part names");
+  const std::size_t contact_count = call_body(model, pose);
   call_skin(asset, pose, contact_count);
   std::printf("%zu spheres, %zu pairs, %zu pairs of body parts\n", spheres.size(), detect.pair_count, contact_count);
 

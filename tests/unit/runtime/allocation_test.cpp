@@ -12,8 +12,8 @@
 
 namespace spherechain::test {
 
-// symbol_rules.cmake sees to malloc, which only character.cpp may call.
-TEST_CASE("no job and no function but sc_character_create() allocates, on any target, however many bones there are") {
+// symbol_rules.cmake sees to malloc. body_test.cpp has the questions about a body.
+TEST_CASE("no job allocates, nor does opening or binding an asset, on any target, however many bones there are") {
   for (const std::size_t bones : {9U, 300U}) {
     TinyAsset tiny = random_band(30, 1);
     for (std::size_t i = 0; i < 30; ++i) give_pivots(tiny, i, 2, static_cast<unsigned>(i));

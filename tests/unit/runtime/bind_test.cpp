@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From an engine's joints to contacts of body parts: binding, gathering, the self-check at rest, and Character.
+// From an engine's joints to the bones of an asset: binding, gathering, placing, and the self-check at rest.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -8,7 +8,6 @@
 #include <memory>
 #include <string>
 
-#include "counting_new.h"
 #include "jobs.h"
 #include "palette.h"
 #include "random_poses.h"
@@ -255,84 +254,6 @@ TEST_CASE("in the bind pose all bones have the model's matrix; the first that ha
   short_pose.bone_count = 2;
   CHECK(check(short_pose) == sc_status{SC_TOO_SMALL, SC_FIELD_BONE_COUNT});
   CHECK(rig.message.find("bone_count") != std::string::npos);
-}
-
-TEST_CASE("a character has the contacts of its parts, whatever the order of the joints, and allocates in no frame") {
-  Rig rig;
-  Character character, plain;
-  char message[160] = "";
-  const std::vector<std::uint8_t>& bytes = rig.opened->bytes;
-  // Its own bytes may lie anywhere.
-  std::vector<std::uint8_t> askew(bytes.size() + 1);
-  std::copy(bytes.begin(), bytes.end(), askew.begin() + 1);
-  REQUIRE(character.create(askew.data() + 1, bytes.size(), rig.joints.data(), kRigBones, rig.layout, message, 160) ==
-          SC_OK);
-  REQUIRE(plain.create(bytes.data(), bytes.size(), nullptr, 0, SC_LAYOUT_UNSET, message, 160) == SC_OK);
-  askew.assign(askew.size(), 0);
-  CHECK(std::string(character.part_name(1)) == "right hand");
-  std::size_t total = 0;
-  for (unsigned frame = 0; frame < 20; ++frame) {
-    const std::vector<Matrix> bones = random_bones(frame);
-    const Palette palette(rig.palette_of(bones), SC_COLUMNS_4X4, 1);
-    SkinContactJob job;
-    job.asset = &rig.opened->asset;
-    job.pose = pose_of(bones);
-    const std::vector<PartContact> expected = find_contacts(job).parts;
-    const std::size_t before = allocation_count();
-    for (Character* one : {&character, &plain}) {
-      const PartContact* contacts = nullptr;
-      std::size_t count = 0;
-      REQUIRE(one->contacts(one == &plain ? job.pose : palette.pose(), contacts, count) == SC_OK);
-      REQUIRE(count == expected.size());
-      CHECK((count == 0 || std::memcmp(contacts, expected.data(), count * sizeof(PartContact)) == 0));
-      total += count;
-    }
-    CHECK(allocation_count() == before);
-  }
-  CHECK(total > 50);
-  const Palette rest(rig.palette_of(std::vector<Matrix>(kRigBones, kIdentity)), SC_COLUMNS_4X4, 0);
-  CHECK(character.check_rest(rest.pose(), message, 160) == SC_OK);
-  const Palette moved(rig.palette_of(random_bones(1)), SC_COLUMNS_4X4, 0);
-  CHECK(character.check_rest(moved.pose(), message, 160) == SC_OTHER_BIND);
-
-  Character other(std::move(character));
-  CHECK(std::string(other.part_name(0)) == "left hand");
-  Pose unset = moved.pose();
-  unset.bone_layout = SC_LAYOUT_UNSET;
-  const PartContact* contacts = nullptr;
-  std::size_t count = 5;
-  CHECK(other.contacts(unset, contacts, count) == sc_status{SC_BAD_VALUE, SC_FIELD_BONE_LAYOUT});
-  CHECK(count == 0);
-}
-
-TEST_CASE("a character that cannot be made is null, and the message says why") {
-  Rig rig;
-  const std::vector<std::uint8_t>& bytes = rig.opened->bytes;
-  const auto create = [&](std::uint32_t abi, const std::vector<std::uint8_t>& data, const sc_bone* joints) {
-    rig.message.assign(160, '\0');
-    sc_character* character = reinterpret_cast<sc_character*>(&rig);
-    const sc_status status = sc_character_create(abi, data.data(), data.size(), joints, kRigBones, rig.layout,
-                                                 &character, rig.message.data(), 160);
-    CHECK(character == nullptr);
-    rig.message.resize(rig.message.find('\0'));
-    return status;
-  };
-  CHECK(create(SC_ABI_VERSION - 1, bytes, nullptr) == SC_WRONG_ABI);
-  CHECK(!rig.message.empty());
-  CHECK(create(SC_ABI_VERSION, {bytes.begin(), bytes.end() - 100}, nullptr) == SC_CORRUPT);
-  CHECK(!rig.message.empty());
-  rig.joints[3].name = "other";
-  CHECK(create(SC_ABI_VERSION, bytes, rig.joints.data()) == SC_NO_SUCH_BONE);
-  CHECK(rig.message.find("\"bone2\"") != std::string::npos);
-  const std::vector<std::uint8_t> without = build(random_asset(5, 1).parts);
-  CHECK(create(SC_ABI_VERSION, without, nullptr) == sc_status{SC_NOT_IN_ASSET, SC_FIELD_ASSET});
-  CHECK(rig.message.find("triangles") != std::string::npos);
-  sc_character* none = nullptr;
-  CHECK(sc_character_create(SC_ABI_VERSION, nullptr, 5, nullptr, 0, SC_LAYOUT_UNSET, &none, nullptr, 0) ==
-        sc_status{SC_NULL, SC_FIELD_DATA});
-  CHECK(sc_character_create(SC_ABI_VERSION, bytes.data(), bytes.size(), nullptr, 0, SC_LAYOUT_UNSET, nullptr, nullptr,
-                            0) == sc_status{SC_NULL, SC_FIELD_OUTPUT});
-  sc_character_destroy(nullptr);
 }
 
 }  // namespace spherechain::test

@@ -270,7 +270,7 @@ TEST_CASE("two bodies, the ground and the way between two poses give what the jo
     CHECK(part.joint == model.part_joint(part.part));
   }
   sc_vec3 low, high;
-  CHECK(sc_get_bounds(other.handle(), &low, &high) == SC_OK);
+  CHECK(other.bounds(low, high) == SC_OK);
   for (const Penetration& part : below) CHECK(part.deepest.position.y >= low.y);
 }
 
@@ -373,6 +373,86 @@ TEST_CASE("a model knows what a triangle belongs to, which joint moves a part, a
   const Model wrong(winding.opened->bytes.data(), winding.opened->bytes.size() - 100, nullptr, 0, SC_LAYOUT_UNSET);
   CHECK_FALSE(wrong);
   CHECK(wrong.status() == SC_CORRUPT);
+}
+
+TEST_CASE("a model keeps a copy of bytes that lay anywhere, and bodies take palettes of any layout and stride") {
+  const Winding winding;
+  const std::vector<std::uint8_t>& bytes = winding.opened->bytes;
+  std::vector<std::uint8_t> askew(bytes.size() + 1);
+  std::copy(bytes.begin(), bytes.end(), askew.begin() + 1);
+  Model bound(askew.data() + 1, bytes.size(), winding.joints.data(), winding.joints.size(), SC_ROWS_3X4);
+  const Model plain(bytes.data(), bytes.size(), nullptr, 0, SC_LAYOUT_UNSET);
+  askew.assign(askew.size(), 0);
+  REQUIRE_MESSAGE(bound, bound.message());
+  const Model model(std::move(bound));
+  CHECK_FALSE(bound);
+  CHECK(std::string(model.part_name(1)) == "right hand");
+  CHECK(model.part_count() == model.info().part_count);
+  CHECK(model.part(1).side == SC_SIDE_RIGHT);
+  Body with_joints(model), in_order(plain);
+  std::size_t total = 0;
+  for (unsigned frame = 0; frame < 6; ++frame) {
+    const std::vector<Matrix> bones = Winding::bones(frame);
+    SkinContactJob job;
+    job.asset = &winding.opened->asset;
+    job.pose = pose_of(bones);
+    const std::vector<PartContact> expected = find_contacts(job).parts;
+    for (const MatrixLayout layout : kLayouts) {
+      for (const std::size_t padding : {0U, 3U}) {
+        const Palette palette(bones, layout, padding), reversed(Winding::reversed(bones), layout, padding);
+        REQUIRE(with_joints.set_pose(reversed.pose()) == SC_OK);
+        REQUIRE(in_order.set_pose(palette.pose()) == SC_OK);
+        for (Body* body : {&with_joints, &in_order}) {
+          const Contacts found = body->contacts();
+          CHECK(same_bits<PartContact>({found.begin(), found.end()}, expected));
+          total += found.part_count;
+        }
+      }
+    }
+  }
+  CHECK(total > 50);
+}
+
+TEST_CASE("a model that cannot be made is null, and the message says why") {
+  const Winding winding;
+  const std::vector<std::uint8_t>& bytes = winding.opened->bytes;
+  std::string message;
+  const auto create = [&](std::uint32_t abi, const std::vector<std::uint8_t>& data, const std::vector<Bone>& joints) {
+    sc_model_def def{};
+    def.data = data.data();
+    def.size = data.size();
+    def.joints = joints.empty() ? nullptr : joints.data();
+    def.joint_count = joints.size();
+    def.inverse_bind_layout = SC_ROWS_3X4;
+    message.assign(256, '\0');
+    sc_model* model = reinterpret_cast<sc_model*>(&def);
+    const sc_status status = sc_create_model(abi, &def, &model, message.data(), message.size());
+    CHECK(model == nullptr);
+    message.resize(message.find('\0'));
+    return status;
+  };
+  CHECK(create(SC_ABI_VERSION - 1, bytes, {}) == SC_WRONG_ABI);
+  CHECK(!message.empty());
+  CHECK(create(SC_ABI_VERSION, {bytes.begin(), bytes.end() - 100}, {}) == SC_CORRUPT);
+  CHECK(!message.empty());
+  std::vector<Bone> joints = winding.joints;
+  joints[3].name = "other";
+  CHECK(create(SC_ABI_VERSION, bytes, joints) == SC_NO_SUCH_BONE);
+  CHECK_MESSAGE(message.find(winding.joints[3].name) != std::string::npos, message);
+  CHECK(create(SC_ABI_VERSION, build(random_asset(5, 1).parts), {}) == sc_status{SC_NOT_IN_ASSET, SC_FIELD_ASSET});
+  CHECK(message.find("triangles") != std::string::npos);
+  sc_model_def def{};
+  sc_model* model = nullptr;
+  CHECK(sc_create_model(SC_ABI_VERSION, &def, &model, nullptr, 0) == sc_status{SC_NULL, SC_FIELD_DATA});
+  def.data = bytes.data();
+  def.size = bytes.size();
+  CHECK(sc_create_model(SC_ABI_VERSION, &def, nullptr, nullptr, 0) == sc_status{SC_NULL, SC_FIELD_OUTPUT});
+  const sc_allocator incomplete{};
+  def.allocator = &incomplete;
+  CHECK(sc_create_model(SC_ABI_VERSION, &def, &model, nullptr, 0) == sc_status{SC_NULL, SC_FIELD_ALLOCATOR});
+  CHECK(sc_create_model(SC_ABI_VERSION, nullptr, &model, nullptr, 0) == sc_status{SC_NULL, SC_FIELD_DATA});
+  sc_destroy_model(nullptr);
+  sc_destroy_body(nullptr);
 }
 
 TEST_CASE("a question with a wrong argument finds nothing and names the field") {

@@ -167,10 +167,7 @@ static void call_step(const sc_asset* asset, const sc_pose* pose, c_calls_result
   free(rest);
 }
 
-static void call_character(const void* data, size_t size, const sc_asset* asset, const sc_pose* pose,
-                           c_calls_result* out) {
-  sc_character* character = NULL;
-  const sc_part_contact* parts = NULL;
+static void call_binding(const sc_asset* asset, const sc_pose* pose, c_calls_result* out) {
   sc_bone joints[64];
   uint32_t joint_of_bone[64];
   float* bones = (float*)words(12 * pose->bone_count);
@@ -187,13 +184,57 @@ static void call_character(const void* data, size_t size, const sc_asset* asset,
     EXPECT(bones[3] == x + 1);
   }
   EXPECT(sc_check_rest_pose(asset, pose, NULL, 0).code == SC_OTHER_BIND);
-  OK(sc_character_create(SC_ABI_VERSION, data, size, NULL, 0, SC_LAYOUT_UNSET, &character, NULL, 0));
-  EXPECT(sc_asset_is_open(sc_character_asset(character)));
-  EXPECT(sc_character_check_rest(character, pose, NULL, 0).code == SC_OTHER_BIND);
-  OK(sc_character_contacts(character, pose, &parts, &out->part_count));
-  memcpy(out->parts, parts, out->part_count * sizeof *parts);
-  sc_character_destroy(character);
   free(bones);
+}
+
+static void call_model_and_body(const void* data, size_t size, const sc_pose* pose, c_calls_result* out) {
+  sc_model_def def = {0};
+  sc_body_def body_def = {0};
+  sc_query query = {0};
+  sc_ground ground = {0};
+  sc_model* model = NULL;
+  sc_body *body = NULL, *other = NULL;
+  sc_contacts contacts;
+  sc_penetrations found;
+  sc_sphere_pairs spheres;
+  sc_steps steps;
+  sc_vec3 low, high;
+  def.data = data;
+  def.size = size;
+  body_def.finds_steps = 1;
+  query.classes = ~0U;
+  OK(sc_create_model(SC_ABI_VERSION, &def, &model, NULL, 0));
+  OK(sc_create_body(model, &body_def, &body));
+  OK(sc_create_body(model, NULL, &other));
+  EXPECT(sc_asset_is_open(sc_get_asset(model)));
+  EXPECT(sc_check_rest(model, pose, NULL, 0).code == SC_OTHER_BIND);
+  EXPECT(sc_get_part_joint(model, 0) == (uint32_t)sc_asset_part(sc_get_asset(model), 0).bone);
+  EXPECT(sc_get_triangle(model, 0).part < sc_asset_get_info(sc_get_asset(model)).part_count);
+  OK(sc_set_pose(body, pose, NULL));
+  OK(sc_set_pose(other, pose, NULL));
+  OK(sc_find_contacts(body, NULL, NULL, &contacts));
+  out->part_count = contacts.part_count;
+  memcpy(out->parts, contacts.parts, out->part_count * sizeof *out->parts);
+  OK(sc_find_penetrations(body, NULL, &query, &found));
+  EXPECT(found.count > 0 && found.total == found.count);
+  EXPECT(sc_classify(NULL, &found.items[0].measures) == found.items[0].kind);
+  EXPECT(strcmp(sc_penetration_class_name(SC_CLASS_FOLD), "fold") == 0);
+  OK(sc_find_penetrations(body, other, &query, &found));
+  EXPECT(found.total == out->body_part_count);
+  OK(sc_find_sphere_pairs(body, NULL, &spheres));
+  EXPECT(memcmp(spheres.spheres, out->spheres, spheres.sphere_count * sizeof *out->spheres) == 0);
+  ground.up.x = 1;
+  ground.height = 100;
+  OK(sc_find_in_ground(body, &ground, &query, &found));
+  EXPECT(found.total == out->floor_part_count);
+  OK(sc_get_bounds(body, &low, &high));
+  EXPECT(low.x < high.x);
+  OK(sc_set_pose(body, pose, NULL));
+  OK(sc_find_steps(body, NULL, NULL, &steps));
+  EXPECT(steps.count == out->part_count && steps.items[0].at_start && steps.items[0].at_end);
+  sc_destroy_body(other);
+  sc_destroy_body(body);
+  sc_destroy_model(model);
 }
 
 void c_call_all(const void* data, size_t size, const float* matrices, size_t bone_count, const float* rest,
@@ -209,5 +250,6 @@ void c_call_all(const void* data, size_t size, const float* matrices, size_t bon
   call_skin(&asset, &pose, out);
   call_bodies(&asset, &pose, out);
   call_step(&asset, &pose, out);
-  call_character(data, size, &asset, &pose, out);
+  call_binding(&asset, &pose, out);
+  call_model_and_body(data, size, &pose, out);
 }
