@@ -68,7 +68,7 @@ namespace Spherechain
         NoSuchBone = 16,
         /// <summary>a bone's inverse bind matrix, or its place at rest, differs from the asset's</summary>
         OtherBind = 17,
-        /// <summary>an allocation failed (sc_character_create and HostCrowd only)</summary>
+        /// <summary>an allocation failed (of a model, a body or a HostCrowd)</summary>
         NoMemory = 18,
         /// <summary>no CUDA device, or no driver for one</summary>
         NoDevice = 19,
@@ -542,7 +542,6 @@ namespace Spherechain
             public Detail Detail;
             /// <summary>of a body with itself, by spheres and regions; null: the asset's ignored pairs</summary>
             public Filter* Filter;
-            /// <summary>sc_part_words() words: bit p: body part p meets nothing; null: all meet</summary>
             public ulong* IgnoredParts;
             public ulong* IgnoredPartsOfOther;
             /// <summary>null: sc_default_rule()</summary>

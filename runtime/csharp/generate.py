@@ -15,14 +15,14 @@ import subprocess
 import sys
 
 # Left out of C#, because Model and Body do it. Functions that take one of these structs are left out, too.
-UNUSED = re.compile(r"""sc_(?!crowd_|scene_)\w+_job | sc_job_body | sc_motion | sc_blend | sc_character\w* | sc_place_bones | sc_check_rest_pose
+UNUSED = re.compile(r"""sc_(?!crowd_|scene_)\w+_job | sc_job_body | sc_motion | sc_blend | sc_place_bones | sc_check_rest_pose
     | sc_detect_table_words | sc_prepare_\w+ | sc_(?!crowd_|scene_)\w+_scratch_words | sc_skin_table_words""", re.X)
 # Constants that C# cannot have, and why.
 LEFT_OUT = {
     "SC_WHOLE_SOURCE": "its width depends on the machine: pass new UIntPtr(UIntPtr.Size == 8 ? ulong.MaxValue : uint.MaxValue)",
 }
 RENAMED = {"sc_transform": "JointTransform"}  # Transform is UnityEngine's
-OPAQUE = {"sc_body", "sc_character", "sc_model"}  # handles: IntPtr
+OPAQUE = {"sc_body", "sc_model"}  # handles: IntPtr
 NUMBERS = {"void": "void", "char": "byte", "int": "int", "float": "float", "int32_t": "int", "uint32_t": "uint",
            "uint64_t": "ulong", "size_t": "UIntPtr"}
 KEYWORDS = {"in", "out", "ref", "params", "object", "string", "lock", "fixed", "base", "this", "is", "as", "event", "checked"}
