@@ -1,336 +1,416 @@
 // SPDX-License-Identifier: MIT
-// The longer way: a Body is one character with its pose and working memory. Spheres, pairs of spheres, contacts of the skin,
-// their depth, the ground. Lists grow to the largest frame so far and stay: then nothing is allocated.
+// A Body: a model in a pose, and the questions that are asked about it, with a Query for their options. Results are lists that
+// stay and only grow: once they are as long as the largest frame needs, no question allocates.
 using System;
+using System.Runtime.InteropServices;
 using System.Threading;
 
 namespace Spherechain
 {
-    /// <summary>One character. One thread at a time; bodies of one Asset may work side by side. Bodies of one asset cost a
-    /// table of its skin each, of about the size of the asset.</summary>
+    /// <summary>The answer to a question: the first Count of Items. The body's next question of the same kind overwrites it. Total
+    /// is larger where there was no room, or Query.Limit is less.</summary>
+    public sealed class Results<T> where T : struct
+    {
+        public T[] Items { get; private set; }
+        public int Count { get; private set; }
+        public int Total { get; private set; }
+        public T this[int i] { get { return Items[i]; } }
+
+        public Results() { Items = new T[0]; }
+
+        /// <summary>Keeps what the next question would overwrite.</summary>
+        public void CopyFrom(Results<T> other)
+        {
+            Resize(other.Count, other.Total);
+            Array.Copy(other.Items, Items, Count);
+        }
+
+        internal unsafe void CopyFrom(void* from, UIntPtr count, UIntPtr total)
+        {
+            Resize(Text.Int(count), Text.Int(total));
+            if (Count == 0) return;
+            GCHandle pin = GCHandle.Alloc(Items, GCHandleType.Pinned);
+            long bytes = (long)Count * kSize;
+            Buffer.MemoryCopy(from, (void*)pin.AddrOfPinnedObject(), bytes, bytes);
+            pin.Free();
+        }
+
+        void Resize(int count, int total)
+        {
+            if (count > Items.Length) Items = new T[Math.Max(count, 2 * Items.Length)];
+            Count = count;
+            Total = total;
+        }
+
+        static readonly int kSize = Marshal.SizeOf(typeof(T));
+
+        public Enumerator GetEnumerator() { return new Enumerator { items = Items, count = Count, at = -1 }; }
+
+        /// <summary>For `foreach`, which allocates nothing.</summary>
+        public struct Enumerator
+        {
+            internal T[] items;
+            internal int count, at;
+            public bool MoveNext() { return ++at < count; }
+            public T Current { get { return items[at]; } }
+        }
+    }
+
+    /// <summary>Body parts that touch, and with Detail.Full spheres and triangles, too. Sorted, each once.</summary>
+    public sealed class Contacts
+    {
+        public readonly Results<PartContact> Parts = new Results<PartContact>();
+        public readonly Results<Pair> Spheres = new Results<Pair>();
+        public readonly Results<TriangleContact> Triangles = new Results<TriangleContact>();
+        public Results<PartContact>.Enumerator GetEnumerator() { return Parts.GetEnumerator(); }
+    }
+
+    public sealed class SpherePairs
+    {
+        /// <summary>The asset's, in the pose.</summary>
+        public readonly Results<Sphere> Spheres = new Results<Sphere>();
+        public readonly Results<Pair> Pairs = new Results<Pair>();
+    }
+
+    /// <summary>A plane: up . p = height on it. Up is of unit length.</summary>
+    public struct Ground
+    {
+        public Vec3 Up;
+        public float Height;
+    }
+
+    /// <summary>Which pairs of spheres a question about one body leaves out: the asset's own at first.</summary>
+    public sealed unsafe class Filter
+    {
+        internal readonly ulong[] Words;
+        readonly Model model;
+
+        public Filter(Model model)
+        {
+            Text.Require(model, Field.Asset, "the model");
+            this.model = model;
+            Words = new ulong[Text.Int(Native.sc_pair_words(model.Asset))];
+            fixed (ulong* words = Words)
+            {
+                Native.Filter filter = View(words);
+                Done(Native.sc_reset_filter(model.Asset, &filter));
+            }
+        }
+
+        /// <summary>`isIgnored` false reports the pair, also where the asset itself ignores it.</summary>
+        public void IgnorePair(uint a, uint b, bool isIgnored)
+        {
+            fixed (ulong* words = Words)
+            {
+                Native.Filter filter = View(words);
+                Done(Native.sc_ignore_pair(model.Asset, &filter, a, b, isIgnored ? 1 : 0));
+            }
+        }
+
+        /// <summary>Each pair of a sphere of one region with a sphere of the other.</summary>
+        public void IgnoreRegions(int region, int other, bool isIgnored)
+        {
+            fixed (ulong* words = Words)
+            {
+                Native.Filter filter = View(words);
+                Done(Native.sc_ignore_regions(model.Asset, &filter, Text.Size(region), Text.Size(other), isIgnored ? 1 : 0));
+            }
+        }
+
+        internal Native.Filter View(ulong* words)
+        {
+            Native.Filter filter = default(Native.Filter);
+            filter.Ignored = words;
+            filter.IgnoredWords = Text.Size(Words.Length);
+            return filter;
+        }
+
+        void Done(Status status)
+        {
+            Text.Check(status);
+            GC.KeepAlive(model);
+        }
+    }
+
+    /// <summary>The options of a question; default(Query) asks what `spherechain play` and `check` ask.</summary>
+    public struct Query
+    {
+        public const uint AllClasses = uint.MaxValue;
+
+        public Scope Scope;
+        /// <summary>Full: penetrations that are no faults in full, too; contacts of spheres and triangles.</summary>
+        public Detail Detail;
+        /// <summary>Of a body with itself; null: the asset's ignored pairs.</summary>
+        public Filter Filter;
+        /// <summary>Model.PartSet(): of two bodies, parts that meet nothing: a hand that holds the other.</summary>
+        public ulong[] IgnoredParts, IgnoredPartsOfOther;
+        /// <summary>What is a fault; null: Native.sc_default_rule().</summary>
+        public Rule? Rule;
+        /// <summary>Bit k: penetrations of class k are listed; 0: faults alone.</summary>
+        public uint Classes;
+        /// <summary>The worst so many; 0: as many as there is room for.</summary>
+        public int Limit;
+        /// <summary>The penetrations of the frame before: directions of faults then stay steady. What the body returned, or a
+        /// copy.</summary>
+        public Results<Penetration> Previous;
+        /// <summary>Of steps, a share of the height; 0: 0.0001.</summary>
+        public float Tolerance;
+        /// <summary>Of SpherePairs().</summary>
+        public Radius Radius;
+        public Target Target;
+    }
+
+    /// <summary>A model in a pose. One thread at a time gives it poses and asks it; a second one gets an exception. Any number may
+    /// pass it as `other`, while nobody gives it a new pose.</summary>
     public sealed unsafe class Body : IDisposable
     {
-        readonly Memory bones, table, skin, ignored;
-        Memory scratch;
-        readonly uint[] jointOfBone;  // null: palettes come in the asset's order
-        bool isPosed;
+        enum Question { Penetrations, Contacts, SpherePairs, Steps, Ground }
+
+        IntPtr handle;
         int busy;
+        int readers;  // bodies that ask about this one as `other`; -1: its pose changes
+        readonly IntPtr[] vertices = new IntPtr[2];  // copies: of the pose, and of the one before
+        int turn;
+        readonly Results<Penetration> penetrations = new Results<Penetration>(), penetrationsOfOther = new Results<Penetration>(),
+                                      below = new Results<Penetration>();
+        readonly Contacts contacts = new Contacts();
+        readonly SpherePairs spherePairs = new SpherePairs();
+        readonly Results<StepContact> steps = new Results<StepContact>();
 
-        public Asset Asset { get; private set; }
-        /// <summary>Of the last Refit(): Asset.SphereCount of them, in the pose's space.</summary>
-        public Sphere[] Spheres { get; private set; }
-        /// <summary>Of the last Detect(): the first PairCount, of spheres, sorted.</summary>
-        public Pair[] Pairs { get; private set; }
-        public int PairCount { get; private set; }
-        /// <summary>Of the last FindContacts(): the first ContactCount pairs of parts, TriangleCount pairs of triangles.</summary>
-        public PartContact[] Contacts { get { return contacts; } }
-        public int ContactCount { get; private set; }
-        public TriangleContact[] Triangles { get { return triangles; } }
-        public int TriangleCount { get; private set; }
-        /// <summary>Of the last MeasurePenetrations() or FindFloor(): the first PenetrationCount.</summary>
-        public Penetration[] Penetrations { get { return penetrations; } }
-        public int PenetrationCount { get; private set; }
+        public Model Model { get; private set; }
+        /// <summary>For calls of Native.</summary>
+        public IntPtr Handle { get { return handle; } }
 
-        PartContact[] contacts;
-        TriangleContact[] triangles;
-        Penetration[] penetrations;
-
-        /// <summary>`asset` must stay until the body is disposed. `joints` and `inverseBinds`: as for a Character.</summary>
-        public Body(Asset asset, string[] joints = null, float[] inverseBinds = null, MatrixLayout layout = MatrixLayout.LayoutUnset)
+        /// <summary>All of its native memory is allocated here. `largestOther`: of all models that it will meet; null: none is larger
+        /// than its own. Steps() needs `findsSteps`, and much memory. `maxTriangles`, `maxPenetrations`: see body.h.</summary>
+        public Body(Model model, Model largestOther = null, bool findsSteps = false, int maxTriangles = 0, int maxPenetrations = 0)
         {
-            Text.Require(asset, Field.Asset, "the asset");
-            Asset = asset;
-            Native.Asset* view = asset.Open();
-            if (joints != null)
+            Text.Require(model, Field.Asset, "the model");
+            Model = model;
+            Native.BodyDef def = default(Native.BodyDef);
+            def.MaxTriangles = Text.Size(maxTriangles);
+            def.MaxPenetrations = Text.Size(maxPenetrations);
+            def.LargestOther = largestOther == null ? IntPtr.Zero : largestOther.Handle;
+            def.FindsSteps = findsSteps ? 1 : 0;
+            fixed (IntPtr* made = &handle) Text.Check(Native.sc_create_body(model.Handle, &def, made));
+            GC.KeepAlive(model);
+            GC.KeepAlive(largestOther);
+        }
+
+        /// <summary>The new pose; the old one becomes the pose before. `palette`: for each joint the skinning matrix, world times
+        /// inverse bind; null with vertices alone. `place` moves it into the world, where other bodies are. `vertices`: the deformed
+        /// ones, x, y, z, in the source's order. All is copied.</summary>
+        public void SetPose(float[] palette, MatrixLayout layout, JointTransform? place = null, float[] morphWeights = null,
+                            float[] vertices = null)
+        {
+            fixed (float* bones = palette, weights = morphWeights)
             {
-                jointOfBone = new uint[asset.BoneCount];
-                byte* message = stackalloc byte[Text.MessageSize];
-                message[0] = 0;
-                using (Joints taken = new Joints(joints, inverseBinds, layout))
-                {
-                    fixed (uint* of = jointOfBone)
-                    {
-                        Text.Check(Native.sc_bind_joints(view, taken.Bones, Text.Size(taken.Count),
-                                                         inverseBinds == null ? MatrixLayout.Columns4x4 : layout, of,
-                                                         Text.Size(jointOfBone.Length), message, Text.Size(Text.MessageSize)),
-                                   message);
-                    }
-                }
+                Native.Pose pose = palette == null ? default(Native.Pose) : Text.PoseOf(bones, palette.Length, layout);
+                pose.MorphWeights = weights;
+                pose.MorphWeightCount = Text.Size(morphWeights == null ? 0 : morphWeights.Length);
+                SetPose(pose, place, vertices);
             }
-            bones = new Memory(12L * 4 * asset.BoneCount);
-            table = Words(Native.sc_detect_table_words(view));
-            Text.Check(Native.sc_prepare_detect(view, Radius.Detect, null, table.Words, table.WordCount));
-            if (Native.sc_skin_table_words(view) != UIntPtr.Zero)
-            {
-                skin = Words(Native.sc_skin_table_words(view));
-                Text.Check(Native.sc_prepare_skin(view, skin.Words, skin.WordCount));
-            }
-            ignored = Words(Native.sc_part_words(view));
-            scratch = Words(Native.sc_skin_scratch_words(view));
-            Spheres = new Sphere[asset.SphereCount];
-            Pairs = new Pair[asset.SphereCount * (asset.SphereCount - 1) / 2];
-            int pairs = asset.PartCount * (asset.PartCount + 1) / 2;
-            contacts = new PartContact[pairs];
-            penetrations = new Penetration[pairs];
-            triangles = new TriangleContact[4096];
-            GC.KeepAlive(asset);
         }
 
-        /// <summary>A part that meets nothing, in a BodyPair: a hand that holds the other body.</summary>
-        public void IgnorePart(int part, bool isIgnored)
-        {
-            if (ignored.Data == null) throw new SpherechainException(Code.NotOpen, Field.Asset, "the body is disposed");
-            if (part < 0 || part >= Asset.PartCount) throw new SpherechainException(Code.BadValue, Field.Index, "no part " + part);
-            ulong bit = 1ul << (part % 64);
-            if (isIgnored) ignored.Words[part / 64] |= bit;
-            else ignored.Words[part / 64] &= ~bit;
-        }
+        /// <summary>From memory of an engine. Its vertices are not copied: they must stay until the next pose, and for Steps() until the
+        /// one after it.</summary>
+        public void SetPose(Native.Pose pose, JointTransform? place = null) { SetPose(pose, place, null); }
 
-        /// <summary>Takes a frame's palette: a skinning matrix for each joint. All that follows is of this pose.</summary>
-        public void SetPalette(float[] palette, MatrixLayout layout)
+        void SetPose(Native.Pose pose, JointTransform? place, float[] copied)
         {
-            Text.Require(palette, Field.Bones, "the palette");
-            fixed (float* first = palette) SetPalette(first, palette.Length / Joints.Floats(layout), layout);
-        }
-
-        public void SetPalette(float* palette, int count, MatrixLayout layout)
-        {
-            Native.Asset* view = Enter(false);
+            Enter(true);
             try
             {
-                isPosed = false;
-                PairCount = ContactCount = TriangleCount = PenetrationCount = 0;
-                Native.Pose pose = Character.PoseOf(palette, count, layout);
-                if (jointOfBone != null)
+                if (copied != null)
                 {
-                    fixed (uint* of = jointOfBone) Text.Check(Native.sc_gather_bones(view, of, &pose, (float*)bones.Data));
+                    if (copied.Length / 3 < Model.VertexCount)
+                    {
+                        throw new SpherechainException(Code.TooSmall, Field.VertexCount, "fewer vertices than the source has");
+                    }
+                    turn = 1 - turn;
+                    if (vertices[turn] == IntPtr.Zero) vertices[turn] = Marshal.AllocHGlobal(12 * Model.VertexCount);
+                    Marshal.Copy(copied, 0, vertices[turn], 3 * Model.VertexCount);
+                    pose.Vertices = (float*)vertices[turn];
+                    pose.VertexCount = Text.Size(Model.VertexCount);
+                }
+                JointTransform to = place.GetValueOrDefault();
+                Text.Check(Native.sc_set_pose(handle, &pose, place.HasValue ? &to : null));
+            }
+            finally { Leave(true); }
+        }
+
+        /// <summary>Which body parts are inside each other: faults first, then the deepest.</summary>
+        public Results<Penetration> Penetrations(Query query = default(Query))
+        {
+            Ask(Question.Penetrations, null, ref query, penetrations);
+            return penetrations;
+        }
+
+        /// <summary>The same of two bodies. Part is of this one.</summary>
+        public Results<Penetration> Penetrations(Body other, Query query = default(Query))
+        {
+            Text.Require(other, Field.Bodies, "the other body");
+            Ask(Question.Penetrations, other, ref query, penetrationsOfOther);
+            return penetrationsOfOther;
+        }
+
+        /// <summary>Which parts are below the ground: Other is Native.Floor.</summary>
+        public Results<Penetration> Below(Ground ground, Query query = default(Query))
+        {
+            Ask(Question.Ground, null, ref query, below, ground);
+            return below;
+        }
+
+        /// <summary>Which body parts touch. Cheaper.</summary>
+        public Contacts Contacts(Query query = default(Query))
+        {
+            Ask(Question.Contacts, null, ref query);
+            return contacts;
+        }
+
+        public Contacts Contacts(Body other, Query query = default(Query))
+        {
+            Text.Require(other, Field.Bodies, "the other body");
+            Ask(Question.Contacts, other, ref query);
+            return contacts;
+        }
+
+        /// <summary>Where the spheres are, and which overlap: a cheap alarm, with false ones.</summary>
+        public SpherePairs SpherePairs(Query query = default(Query))
+        {
+            Ask(Question.SpherePairs, null, ref query);
+            return spherePairs;
+        }
+
+        /// <summary>What touches on the way from the pose before to this one. Of a body that was made with `findsSteps`.</summary>
+        public Results<StepContact> Steps(Query query = default(Query))
+        {
+            Ask(Question.Steps, null, ref query);
+            return steps;
+        }
+
+        public Results<StepContact> Steps(Body other, Query query = default(Query))
+        {
+            Text.Require(other, Field.Bodies, "the other body");
+            Ask(Question.Steps, other, ref query);
+            return steps;
+        }
+
+        /// <summary>A box that holds all of the skin.</summary>
+        public void Bounds(out Vec3 low, out Vec3 high)
+        {
+            Enter(false);
+            try
+            {
+                Vec3 from, to;
+                Check(Native.sc_get_bounds(handle, &from, &to));
+                low = from;
+                high = to;
+            }
+            finally { Leave(false); }
+        }
+
+        void Ask(Question question, Body other, ref Query query, Results<Penetration> list = null, Ground ground = default(Ground))
+        {
+            if (other == this) throw new SpherechainException(Code.BadValue, Field.Bodies, "a body meets another one");
+            CheckParts(query.IgnoredParts, this);
+            CheckParts(query.IgnoredPartsOfOther, other);
+            Enter(false);
+            try
+            {
+                if (other != null) other.BeginRead();
+                try { AskNative(question, other == null ? IntPtr.Zero : other.handle, ref query, list, ground); }
+                finally { if (other != null) other.EndRead(); }
+            }
+            finally { Leave(false); }
+        }
+
+        void AskNative(Question question, IntPtr other, ref Query query, Results<Penetration> list, Ground ground)
+        {
+            fixed (ulong* words = query.Filter == null ? null : query.Filter.Words)
+            fixed (ulong* ignored = query.IgnoredParts, ignoredOfOther = query.IgnoredPartsOfOther)
+            fixed (Penetration* previous = query.Previous == null ? null : query.Previous.Items)
+            {
+                Native.Filter filter = query.Filter == null ? default(Native.Filter) : query.Filter.View(words);
+                Rule rule = query.Rule.GetValueOrDefault();
+                Native.Query q = default(Native.Query);
+                q.Scope = query.Scope;
+                q.Detail = query.Detail;
+                q.Filter = query.Filter == null ? null : &filter;
+                q.IgnoredParts = ignored;
+                q.IgnoredPartsOfOther = ignoredOfOther;
+                q.Rule = query.Rule.HasValue ? &rule : null;
+                q.Classes = query.Classes;
+                q.Limit = Text.Size(query.Limit);
+                q.Previous = previous;
+                q.PreviousCount = Text.Size(previous == null ? 0 : query.Previous.Count);
+                q.Tolerance = query.Tolerance;
+                q.Radius = query.Radius;
+                q.Target = query.Target;
+
+                Status status;
+                if (question == Question.Contacts)
+                {
+                    Native.Contacts found;
+                    status = Native.sc_find_contacts(handle, other, &q, &found);
+                    contacts.Parts.CopyFrom(found.Parts, found.PartCount, found.PartCount);
+                    contacts.Spheres.CopyFrom(found.Spheres, found.SphereCount, found.SphereTotal);
+                    contacts.Triangles.CopyFrom(found.Triangles, found.TriangleCount, found.TriangleTotal);
+                }
+                else if (question == Question.SpherePairs)
+                {
+                    Native.SpherePairs found;
+                    status = Native.sc_find_sphere_pairs(handle, &q, &found);
+                    spherePairs.Spheres.CopyFrom(found.Spheres, found.SphereCount, found.SphereCount);
+                    spherePairs.Pairs.CopyFrom(found.Pairs, found.Count, found.Total);
+                }
+                else if (question == Question.Steps)
+                {
+                    Native.Steps found;
+                    status = Native.sc_find_steps(handle, other, &q, &found);
+                    steps.CopyFrom(found.Items, found.Count, found.Count);
                 }
                 else
                 {
-                    Copy(palette, count, layout);
+                    Native.Penetrations found;
+                    Native.Ground plane = default(Native.Ground);
+                    plane.Up = ground.Up;
+                    plane.Height = ground.Height;
+                    status = question == Question.Ground ? Native.sc_find_in_ground(handle, &plane, &q, &found)
+                                                         : Native.sc_find_penetrations(handle, other, &q, &found);
+                    list.CopyFrom(found.Items, found.Count, found.Total);
                 }
-                isPosed = true;
-            }
-            finally { Leave(); }
-        }
-
-        void Copy(float* palette, int count, MatrixLayout layout)
-        {
-            if (palette == null || count < Asset.BoneCount)
-            {
-                throw new SpherechainException(palette == null ? Code.Null : Code.TooSmall, palette == null ? Field.Bones : Field.BoneCount,
-                                               "the palette has fewer matrices than the asset has bones");
-            }
-            int floats = Joints.Floats(layout);
-            bool byRows = layout == MatrixLayout.Rows3x4 || layout == MatrixLayout.Rows4x4;
-            int height = layout == MatrixLayout.Columns3x4 ? 3 : 4;
-            float* to = (float*)bones.Data;
-            for (int bone = 0; bone < Asset.BoneCount; ++bone, palette += floats)
-            {
-                for (int row = 0; row < 3; ++row)
-                {
-                    for (int column = 0; column < 4; ++column) *to++ = palette[byRows ? 4 * row + column : height * column + row];
-                }
+                Check(status);
             }
         }
 
-        /// <summary>Moves the pose from the character's own space into the world, where the other body is. No scale: the
-        /// classes of penetrations compare with the character's height.</summary>
-        public void Place(JointTransform transform)
+        static void CheckParts(ulong[] words, Body body)
         {
-            Enter(true);
-            PairCount = ContactCount = TriangleCount = PenetrationCount = 0;
-            try { Text.Check(Native.sc_place_bones(&transform, (float*)bones.Data, Text.Size(Asset.BoneCount))); }
-            finally { Leave(); }
+            if (words == null || body == null || words.Length >= (body.Model.PartCount + 63) / 64) return;
+            throw new SpherechainException(Code.TooSmall, Field.IgnoredParts, "a bit for each part: Model.PartSet()");
         }
 
-        /// <summary>Where the spheres are: Spheres.</summary>
-        public void Refit()
+        static void Check(Status status)
         {
-            Native.Asset* view = Enter(true);
-            try { RefitIn(view); }
-            finally { Leave(); }
+            string text = status.Field != Field.Bodies ? null
+                : status.Code == Code.NotOpen ? "a body has no pose: SetPose(); a step needs two"
+                : status.Code == Code.TooSmall ? "the body was made without findsSteps, or for a smaller other model" : null;
+            if (text != null) throw new SpherechainException(status.Code, status.Field, text);
+            Text.Check(status);
         }
 
-        void RefitIn(Native.Asset* view)
+        static SpherechainException InUse()
         {
-            fixed (Sphere* spheres = Spheres)
-            {
-                Native.RefitJob job = default(Native.RefitJob);
-                job.Asset = view;
-                job.Pose = Pose;
-                job.Spheres = spheres;
-                job.SphereCapacity = Text.Size(Spheres.Length);
-                Text.Check(Native.sc_refit(&job));
-            }
+            return new SpherechainException(Code.Aliased, Field.Bodies, "the body is in use: make one a thread");
         }
 
-        /// <summary>Refit(), and which spheres touch: a cheap alarm, with false ones. Returns PairCount.</summary>
-        public int Detect()
+        void Enter(bool changesPose)
         {
-            Native.Asset* view = Enter(true);
+            if (Interlocked.CompareExchange(ref busy, 1, 0) != 0) throw InUse();
             try
             {
-                RefitIn(view);
-                fixed (Sphere* spheres = Spheres)
-                fixed (Pair* pairs = Pairs)
-                {
-                    Native.DetectJob job = default(Native.DetectJob);
-                    job.Asset = view;
-                    job.Spheres = spheres;
-                    job.SphereCount = Text.Size(Spheres.Length);
-                    job.Table = table.Words;
-                    job.Pairs = pairs;
-                    job.PairCapacity = Text.Size(Pairs.Length);
-                    Text.Check(Native.sc_detect(&job));
-                    return PairCount = Text.Int(job.PairCount);
-                }
-            }
-            finally { Leave(); }
-        }
-
-        /// <summary>Where the skin intersects itself, exactly: Contacts and Triangles. Returns ContactCount. Scope.Apart leaves
-        /// the folds at joints out.</summary>
-        public int FindContacts(Scope scope)
-        {
-            Native.Asset* view = Enter(true);
-            try
-            {
-                Room(Native.sc_skin_scratch_words(view));
-                for (;;)
-                {
-                    fixed (PartContact* parts = contacts)
-                    fixed (TriangleContact* found = triangles)
-                    {
-                        Native.SkinContactJob job = default(Native.SkinContactJob);
-                        job.Asset = view;
-                        job.Pose = Pose;
-                        job.Scope = scope;
-                        job.SkinTable = Skin;
-                        job.Scratch = scratch.Words;
-                        job.ScratchWords = scratch.WordCount;
-                        job.Parts = parts;
-                        job.PartCapacity = Text.Size(contacts.Length);
-                        job.Triangles = found;
-                        job.TriangleCapacity = Text.Size(triangles.Length);
-                        Status status = Native.sc_find_skin_contacts(&job);
-                        if (status.Code != Code.Overflow) Text.Check(status);
-                        ContactCount = Text.Int(job.PartCount);
-                        TriangleCount = Text.Int(job.TriangleCount);
-                        measured = scope;
-                        if (status.Code == Code.Ok) return ContactCount;
-                    }
-                    Lists.Grow(ref contacts, ContactCount);
-                    Lists.Grow(ref triangles, TriangleCount);
-                }
-            }
-            catch
-            {
-                ContactCount = TriangleCount = 0;
-                throw;
-            }
-            finally { Leave(); }
-        }
-
-        Scope measured;
-
-        /// <summary>How deep what the last FindContacts() of this pose found is, and which way out: Penetrations. `quick`: as a
-        /// Character measures, only likely faults in full; else everything in full, with volumes. Returns PenetrationCount.</summary>
-        public int MeasurePenetrations(bool quick)
-        {
-            PenetrationCount = 0;
-            Native.Asset* view = Enter(true);
-            try
-            {
-                Room(Native.sc_penetration_scratch_words(view, Text.Size(TriangleCount)));
-                for (;;)
-                {
-                    int count;
-                    fixed (TriangleContact* found = triangles)
-                    fixed (Penetration* measures = penetrations)
-                    {
-                        Native.PenetrationJob job = default(Native.PenetrationJob);
-                        job.Asset = view;
-                        job.Pose = Pose;
-                        job.Scope = measured;
-                        job.SkinTable = Skin;
-                        job.Contacts = found;
-                        job.ContactCount = Text.Size(TriangleCount);
-                        job.Quick = quick ? 1 : 0;
-                        job.Scratch = scratch.Words;
-                        job.ScratchWords = scratch.WordCount;
-                        job.Penetrations = measures;
-                        job.PenetrationCapacity = Text.Size(penetrations.Length);
-                        Status status = Native.sc_measure_penetrations(&job);
-                        if (status.Code != Code.Overflow) Text.Check(status);
-                        count = Text.Int(job.PenetrationCount);
-                        if (status.Code == Code.Ok) return PenetrationCount = count;
-                    }
-                    Lists.Grow(ref penetrations, count);
-                }
-            }
-            finally { Leave(); }
-        }
-
-        /// <summary>Which parts are below the plane up . p = height, and how deep: Penetrations, with Other Native.Floor.
-        /// Returns PenetrationCount.</summary>
-        public int FindFloor(Vec3 up, float height)
-        {
-            PenetrationCount = 0;
-            Native.Asset* view = Enter(true);
-            try
-            {
-                Room(Native.sc_floor_scratch_words(view));
-                fixed (Penetration* measures = penetrations)  // a part is there once: there is room
-                {
-                    Native.FloorJob job = default(Native.FloorJob);
-                    job.Body = View(view);
-                    job.Up = up;
-                    job.Height = height;
-                    job.Scratch = scratch.Words;
-                    job.ScratchWords = scratch.WordCount;
-                    job.Penetrations = measures;
-                    job.PenetrationCapacity = Text.Size(penetrations.Length);
-                    Text.Check(Native.sc_find_floor_penetrations(&job));
-                    return PenetrationCount = Text.Int(job.PenetrationCount);
-                }
-            }
-            finally { Leave(); }
-        }
-
-        internal Native.JobBody View(Native.Asset* view)
-        {
-            Native.JobBody body = default(Native.JobBody);
-            body.Asset = view;
-            body.Pose = Pose;
-            body.SkinTable = Skin;
-            body.IgnoredParts = ignored.Words;
-            return body;
-        }
-
-        Native.Pose Pose { get { return Character.PoseOf((float*)bones.Data, Asset.BoneCount, MatrixLayout.Rows3x4); } }
-        ulong* Skin { get { return skin == null ? null : skin.Words; } }
-
-        void Room(UIntPtr words)
-        {
-            if (words.ToUInt64() <= scratch.WordCount.ToUInt64()) return;
-            scratch.Dispose();
-            scratch = Words(words);
-        }
-
-        static Memory Words(UIntPtr words) { return new Memory(8 * checked((long)words.ToUInt64())); }
-
-        internal Native.Asset* Enter(bool needsPose)
-        {
-            if (Interlocked.CompareExchange(ref busy, 1, 0) != 0)
-            {
-                throw new SpherechainException(Code.Aliased, Field.Scratch, "the body is in use: make one a thread");
-            }
-            try
-            {
-                if (bones.Data == null) throw new SpherechainException(Code.NotOpen, Field.Asset, "the body is disposed");
-                if (needsPose && !isPosed) throw new SpherechainException(Code.Null, Field.Bones, "the body has no pose: SetPalette()");
-                return Asset.Open();
+                CheckOpen();
+                if (changesPose && Interlocked.CompareExchange(ref readers, -1, 0) != 0) throw InUse();
             }
             catch
             {
@@ -339,33 +419,63 @@ namespace Spherechain
             }
         }
 
-        internal void Leave()
+        void Leave(bool changesPose)
         {
+            if (changesPose) Volatile.Write(ref readers, 0);
             Volatile.Write(ref busy, 0);
             GC.KeepAlive(this);
         }
 
+        void BeginRead()
+        {
+            for (int now = 0, last = -1; now != last;)
+            {
+                last = Volatile.Read(ref readers);
+                if (last < 0) throw InUse();
+                now = Interlocked.CompareExchange(ref readers, last + 1, last);
+            }
+            try { CheckOpen(); }
+            catch
+            {
+                EndRead();
+                throw;
+            }
+        }
+
+        void EndRead()
+        {
+            Interlocked.Decrement(ref readers);
+            GC.KeepAlive(this);
+        }
+
+        void CheckOpen()
+        {
+            if (handle != IntPtr.Zero && Model.Handle != IntPtr.Zero) return;
+            throw new SpherechainException(Code.NotOpen, Field.Bodies, "the body is disposed");
+        }
+
         public void Dispose()
         {
-            if (bones.Data == null) return;
-            if (Interlocked.CompareExchange(ref busy, 1, 0) != 0)
-            {
-                throw new SpherechainException(Code.Aliased, Field.Scratch, "the body is in use by another thread");
-            }
-            bones.Dispose();
-            table.Dispose();
-            if (skin != null) skin.Dispose();
-            ignored.Dispose();
-            scratch.Dispose();
-            Volatile.Write(ref busy, 0);
+            if (handle == IntPtr.Zero) return;
+            if (Interlocked.CompareExchange(ref busy, 1, 0) != 0) throw InUse();
+            bool isRead = Interlocked.CompareExchange(ref readers, -1, 0) != 0;
+            if (!isRead) Free();
+            Leave(!isRead);
+            if (isRead) throw InUse();
+            GC.SuppressFinalize(this);
         }
-    }
 
-    internal static class Lists
-    {
-        internal static void Grow<T>(ref T[] list, int count)
+        void Free()
         {
-            if (count > list.Length) list = new T[Math.Max(count, 2 * list.Length)];
+            if (handle != IntPtr.Zero) Native.sc_destroy_body(handle);
+            handle = IntPtr.Zero;
+            for (int i = 0; i < 2; ++i)
+            {
+                Marshal.FreeHGlobal(vertices[i]);
+                vertices[i] = IntPtr.Zero;
+            }
         }
+
+        ~Body() { Free(); }
     }
 }

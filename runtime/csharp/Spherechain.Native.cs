@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Written by runtime/csharp/generate.py from the C headers; the test csharp.native fails where it is not what they say now.
-// Types without pointers are public for all code. Jobs and functions are in the class Native, for unsafe code. The headers
-// (runtime/include/spherechain) say what each function promises; size_t is UIntPtr, and a pointer to a function an IntPtr.
+// Types without pointers are public for all code. Structs with pointers, and functions, are in the class Native, for unsafe code.
+// The headers (runtime/include/spherechain) say what each function promises; size_t is UIntPtr, a function pointer an IntPtr.
 using System;
 using System.Runtime.InteropServices;
 
@@ -68,7 +68,7 @@ namespace Spherechain
         NoSuchBone = 16,
         /// <summary>a bone's inverse bind matrix, or its place at rest, differs from the asset's</summary>
         OtherBind = 17,
-        /// <summary>an allocation failed (sc_character_create and HostCrowd only)</summary>
+        /// <summary>an allocation failed (of a model, a body or a HostCrowd)</summary>
         NoMemory = 18,
         /// <summary>no CUDA device, or no driver for one</summary>
         NoDevice = 19,
@@ -194,48 +194,27 @@ namespace Spherechain
         Full = 1,
     }
 
-    public enum Blend : int  // sc_blend
-    {
-        /// <summary>matrices, vertices and morph weights: each number on its own</summary>
-        Linear = 0,
-        /// <summary>joints: rotations at constant speed; translations, scales and morph weights linearly</summary>
-        Slerp = 1,
-        /// <summary>joints: rotations as quaternions, linearly, brought back to unit length</summary>
-        Nlerp = 2,
-    }
-
-    [StructLayout(LayoutKind.Sequential)]
     public struct Vec3  // sc_vec3
     {
-        public float X;
-        public float Y;
-        public float Z;
+        public float X, Y, Z;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct Sphere  // sc_sphere
     {
-        public float X;
-        public float Y;
-        public float Z;
-        public float Radius;
+        public float X, Y, Z, Radius;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct Pair  // sc_pair
     {
-        public uint A;
-        public uint B;
+        public uint A, B;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct Status  // sc_status
     {
         public Code Code;
         public Field Field;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct RestSphere  // sc_rest_sphere
     {
         public Vec3 Center;
@@ -251,19 +230,15 @@ namespace Spherechain
         public int Level;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct SourceBuffer  // sc_source_buffer
     {
-        public uint Mesh;
         /// <summary>glTF: indices in the file; other formats: the importer's mesh, and 0</summary>
-        public uint Primitive;
-        public uint FirstVertex;
-        public uint VertexCount;
+        public uint Mesh, Primitive;
+        public uint FirstVertex, VertexCount;
         /// <summary>sc_hash_positions() of its positions as the file has them</summary>
         public ulong Hash;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct Measures  // sc_measures
     {
         /// <summary>&gt; 0: the way out; the pose's units</summary>
@@ -284,25 +259,21 @@ namespace Spherechain
         public float Thickness;
         /// <summary>depth / thickness * visible length / side of a square like the smaller part; negative: not known, for the class does not depend on it</summary>
         public float Swallowed;
-        public float Height;
         /// <summary>how long the character's height and a metre are in the pose's units</summary>
-        public float Metre;
+        public float Height, Metre;
         public Relation Relation;
         /// <summary>1: the two spots are of one piece of skin</summary>
         public int IsOnePiece;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct Rule  // sc_rule
     {
         /// <summary>SC_RULE_VERSION; others are refused</summary>
         public uint Version;
         /// <summary>the pose's units. Below it parts just touch, and what is deeper is no touch; 0: the next four</summary>
         public float TouchDepth;
-        public float TouchMetres;
-        public float TouchMin;
         /// <summary>a touch is less deep than touch_metres metres, but at least touch_min and at most touch_max</summary>
-        public float TouchMax;
+        public float TouchMetres, TouchMin, TouchMax;
         /// <summary>or up to so many times that, where less goes in than `swallowed` and it is no fold</summary>
         public float TouchTimes;
         public float Swallowed;
@@ -322,35 +293,26 @@ namespace Spherechain
         public float DeepFold;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct PartContact  // sc_part_contact
     {
-        public uint PartA;
         /// <summary>part_a &lt;= part_b; equal where a part meets itself</summary>
-        public uint PartB;
+        public uint PartA, PartB;
         /// <summary>&gt;= 1</summary>
         public uint TrianglePairs;
-        public Vec3 Low;
         /// <summary>a box around the triangles that intersect; the pose's space</summary>
-        public Vec3 High;
+        public Vec3 Low, High;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct TriangleContact  // sc_triangle_contact
     {
-        public uint TriangleA;
         /// <summary>the source's numbers, triangle_a &lt; triangle_b</summary>
-        public uint TriangleB;
-        public uint SphereA;
-        public uint SphereB;
-        public uint PartA;
-        public uint PartB;
-        public Vec3 From;
+        public uint TriangleA, TriangleB;
+        public uint SphereA, SphereB;
+        public uint PartA, PartB;
         /// <summary>the segment in which they cross; of triangles in one plane the longest piece of an edge inside the other triangle. Rounded</summary>
-        public Vec3 To;
+        public Vec3 From, To;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct SkinPoint  // sc_skin_point
     {
         /// <summary>the pose's space</summary>
@@ -358,16 +320,12 @@ namespace Spherechain
         /// <summary>the source's number</summary>
         public uint Triangle;
         /// <summary>of the triangle's corners; their sum is 1</summary>
-        public float Weights0;
-        public float Weights1;
-        public float Weights2;
+        public float Weights0, Weights1, Weights2;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct Penetration  // sc_penetration
     {
-        public uint Part;
-        public uint Other;
+        public uint Part, Other;
         /// <summary>moves `part`, in the order of the model's joints; SC_NO_JOINT where none does</summary>
         public uint Joint;
         public PenetrationClass Kind;
@@ -377,57 +335,43 @@ namespace Spherechain
         public float Distance;
         /// <summary>of the line where the parts cross</summary>
         public Vec3 Centre;
-        public Vec3 Low;
         /// <summary>a box around that line</summary>
-        public Vec3 High;
-        public SkinPoint Deepest;
+        public Vec3 Low, High;
         /// <summary>the points that part last; deepest_other - deepest = distance * direction</summary>
-        public SkinPoint DeepestOther;
+        public SkinPoint Deepest, DeepestOther;
         public Measures Measures;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct StepContact  // sc_step_contact
     {
-        public uint PartA;
-        public uint PartB;
-        public int AtStart;
+        public uint PartA, PartB;
         /// <summary>1: they intersect there: more say the contacts of that pose</summary>
-        public int AtEnd;
+        public int AtStart, AtEnd;
         /// <summary>the first time at which they touch; 0 with at_start</summary>
         public float Begin;
         /// <summary>the last time; 1 with at_end. In between they may part and meet again</summary>
         public float End;
-        public uint TriangleA;
         /// <summary>that touch at `begin`, by the source's numbers; SC_NO_TRIANGLE with at_start</summary>
-        public uint TriangleB;
+        public uint TriangleA, TriangleB;
         /// <summary>where they do; zero with at_start</summary>
         public Vec3 At;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct JointTransform  // sc_transform
     {
         public Vec3 Translation;
         /// <summary>a quaternion: x, y, z, w; of about unit length</summary>
-        public float Rotation0;
-        public float Rotation1;
-        public float Rotation2;
-        public float Rotation3;
+        public float Rotation0, Rotation1, Rotation2, Rotation3;
         /// <summary>along its own axes; negative mirrors</summary>
         public Vec3 Scale;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct Triangle  // sc_triangle
     {
-        public uint Part;
-        public uint Region;
         /// <summary>SC_NO_PART, each: the triangle was left out of the skin, as degenerate ones are</summary>
-        public uint Sphere;
+        public uint Part, Region, Sphere;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct CrowdPair  // sc_crowd_pair
     {
         public uint Instance;
@@ -442,6 +386,7 @@ namespace Spherechain
 #else
         public const string Library = "spherechain";  // spherechain.dll, libspherechain.so, libspherechain.dylib
 #endif
+        const CallingConvention Cdecl = CallingConvention.Cdecl;
 
         public const uint AbiVersion = 11;
         public const uint AssetAlignment = 8;
@@ -452,13 +397,11 @@ namespace Spherechain
         public const uint RuleVersion = 2;
         // Left out: SC_WHOLE_SOURCE: its width depends on the machine: pass new UIntPtr(UIntPtr.Size == 8 ? ulong.MaxValue : uint.MaxValue).
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Asset  // sc_asset
         {
             public fixed ulong Opaque[128];
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Bone  // sc_bone
         {
             public byte* Name;
@@ -466,7 +409,6 @@ namespace Spherechain
             public float* InverseBind;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Part  // sc_part
         {
             public byte* Name;
@@ -479,18 +421,11 @@ namespace Spherechain
             public int Mobility;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct AssetInfo  // sc_asset_info
         {
-            public UIntPtr SphereCount;
-            public UIntPtr BoneCount;
-            public UIntPtr PartCount;
-            public UIntPtr MorphCount;
-            public UIntPtr RegionCount;
-            public UIntPtr SourceBufferCount;
-            public UIntPtr VertexCount;
+            public UIntPtr SphereCount, BoneCount, PartCount, MorphCount, RegionCount, SourceBufferCount;
             /// <summary>of the source</summary>
-            public UIntPtr TriangleCount;
+            public UIntPtr VertexCount, TriangleCount;
             /// <summary>pairs of spheres that are neighbours on the body</summary>
             public UIntPtr IgnoredPairCount;
             /// <summary>"spherechain 0.1.0"</summary>
@@ -502,47 +437,19 @@ namespace Spherechain
             public byte* SourceSha256;
             /// <summary>sc_hash_positions() of the whole rest pose</summary>
             public ulong SourceRestHash;
-            public Vec3 Origin;
-            public Vec3 Left;
-            public Vec3 Up;
             /// <summary>the character's own axes; orthonormal, left x up = forward</summary>
-            public Vec3 Forward;
+            public Vec3 Origin, Left, Up, Forward;
             /// <summary>source units</summary>
             public float Height;
             public float MetresPerUnit;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Filter  // sc_filter
         {
             public ulong* Ignored;
             public UIntPtr IgnoredWords;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct DetectJob  // sc_detect_job
-        {
-            /// <summary>open</summary>
-            public Asset* Asset;
-            public Sphere* Spheres;
-            /// <summary>at least the asset's</summary>
-            public UIntPtr SphereCount;
-            /// <summary>of the spheres: which refit made them</summary>
-            public Radius Radius;
-            public Target Target;
-            public ulong* Table;
-            public Filter* Filter;
-            /// <summary>out: sorted, each once; null: count only</summary>
-            public Pair* Pairs;
-            public UIntPtr PairCapacity;
-            /// <summary>out: bit b(b-1)/2 + a of each pair; sc_pair_words() words exactly; or null. Cheapest</summary>
-            public ulong* Bits;
-            public UIntPtr BitWords;
-            /// <summary>out: how many there are, also where `pairs` is too small</summary>
-            public UIntPtr PairCount;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Pose  // sc_pose
         {
             /// <summary>null: none</summary>
@@ -565,100 +472,18 @@ namespace Spherechain
             public UIntPtr VertexStride;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct SkinContactJob  // sc_skin_contact_job
-        {
-            /// <summary>open, with triangles</summary>
-            public Asset* Asset;
-            public Pose Pose;
-            public Scope Scope;
-            public Target Target;
-            /// <summary>1: find pairs of spheres alone; each ends at its first contact. Cheapest</summary>
-            public int SpheresOnly;
-            /// <summary>from sc_prepare_skin(), of this asset</summary>
-            public ulong* SkinTable;
-            /// <summary>null: the asset's ignored pairs</summary>
-            public Filter* Filter;
-            public Pair* Candidates;
-            public UIntPtr CandidateCount;
-            /// <summary>sc_skin_scratch_words() words; nothing is kept there between runs</summary>
-            public ulong* Scratch;
-            public UIntPtr ScratchWords;
-            public PartContact* Parts;
-            public UIntPtr PartCapacity;
-            /// <summary>a = b: within one sphere's triangles</summary>
-            public Pair* Spheres;
-            public UIntPtr SphereCapacity;
-            public TriangleContact* Triangles;
-            public UIntPtr TriangleCapacity;
-            public ulong* ListedParts;
-            public UIntPtr PartCount;
-            public UIntPtr SphereCount;
-            public UIntPtr TriangleCount;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct PenetrationJob  // sc_penetration_job
-        {
-            /// <summary>open, with triangles</summary>
-            public Asset* Asset;
-            public Pose Pose;
-            public Scope Scope;
-            /// <summary>the same bits on every one</summary>
-            public Target Target;
-            public ulong* SkinTable;
-            public Filter* Filter;
-            /// <summary>null: none</summary>
-            public TriangleContact* Contacts;
-            public UIntPtr ContactCount;
-            /// <summary>null: none</summary>
-            public Penetration* Previous;
-            public UIntPtr PreviousCount;
-            /// <summary>1: along one direction, without volume and visibility, but for likely faults: these are measured in full, so that both forms find the same faults. For games</summary>
-            public int Quick;
-            /// <summary>null: sc_default_rule()</summary>
-            public Rule* Rule;
-            /// <summary>sc_penetration_scratch_words() words; nothing is kept there between runs</summary>
-            public ulong* Scratch;
-            public UIntPtr ScratchWords;
-            /// <summary>null, with a capacity of 0: count only</summary>
-            public Penetration* Penetrations;
-            public UIntPtr PenetrationCapacity;
-            /// <summary>bit k: penetrations of class k are listed and counted; 0: all</summary>
-            public uint Classes;
-            /// <summary>in: entries that are there already, of other contacts; they are counted, too</summary>
-            public UIntPtr KeptCount;
-            public UIntPtr PenetrationCount;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct JobBody  // sc_job_body
-        {
-            /// <summary>open, with triangles; a character, or what `bake --prop` wrote</summary>
-            public Asset* Asset;
-            /// <summary>as of an sc_skin_contact_job; a prop has one bone</summary>
-            public Pose Pose;
-            /// <summary>from sc_prepare_skin(), of this asset</summary>
-            public ulong* SkinTable;
-            /// <summary>bit p: body part p meets nothing; null: all parts meet</summary>
-            public ulong* IgnoredParts;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct SceneBody  // sc_scene_body
         {
             /// <summary>refitted; or null: the box counts</summary>
             public Sphere* Spheres;
             public UIntPtr SphereCount;
-            public Vec3 Low;
             /// <summary>without spheres: a box around the body, as sc_bound_body() has it; finite</summary>
-            public Vec3 High;
+            public Vec3 Low, High;
             public JointTransform* Transform;
             /// <summary>below 32</summary>
             public uint Layer;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct SceneJob  // sc_scene_job
         {
             public SceneBody* Bodies;
@@ -678,84 +503,6 @@ namespace Spherechain
             public UIntPtr PairCount;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct BodyContactJob  // sc_body_contact_job
-        {
-            public JobBody A;
-            public JobBody B;
-            /// <summary>the same contacts on every one</summary>
-            public Target Target;
-            /// <summary>1: find pairs of spheres alone; each ends at its first contact. Cheapest</summary>
-            public int SpheresOnly;
-            /// <summary>sc_body_scratch_words() words; nothing is kept there between runs</summary>
-            public ulong* Scratch;
-            public UIntPtr ScratchWords;
-            public PartContact* Parts;
-            public UIntPtr PartCapacity;
-            public Pair* Spheres;
-            public UIntPtr SphereCapacity;
-            public TriangleContact* Triangles;
-            public UIntPtr TriangleCapacity;
-            public ulong* ListedParts;
-            public UIntPtr PartCount;
-            public UIntPtr SphereCount;
-            public UIntPtr TriangleCount;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct BodyPenetrationJob  // sc_body_penetration_job
-        {
-            public JobBody A;
-            /// <summary>ignored_parts is not read</summary>
-            public JobBody B;
-            public Target Target;
-            /// <summary>null: none</summary>
-            public TriangleContact* Contacts;
-            public UIntPtr ContactCount;
-            /// <summary>null: none</summary>
-            public Penetration* Previous;
-            public UIntPtr PreviousCount;
-            public int Quick;
-            public Rule* Rule;
-            /// <summary>sc_body_penetration_scratch_words() words; nothing is kept there between runs</summary>
-            public ulong* Scratch;
-            public UIntPtr ScratchWords;
-            /// <summary>out: sorted by (part, other)</summary>
-            public Penetration* Penetrations;
-            public UIntPtr PenetrationCapacity;
-            /// <summary>bit k: penetrations of class k are listed and counted; 0: all</summary>
-            public uint Classes;
-            /// <summary>in: entries that are there already, of other contacts; they are counted, too</summary>
-            public UIntPtr KeptCount;
-            public UIntPtr PenetrationCount;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct FloorJob  // sc_floor_job
-        {
-            public JobBody Body;
-            /// <summary>the same bits on every one</summary>
-            public Target Target;
-            /// <summary>of unit length</summary>
-            public Vec3 Up;
-            /// <summary>of the plane: up . p = height on it</summary>
-            public float Height;
-            public IntPtr Terrain;
-            public void* User;
-            /// <summary>as of an sc_penetration_job</summary>
-            public Rule* Rule;
-            /// <summary>sc_floor_scratch_words() words; nothing is kept there between runs</summary>
-            public ulong* Scratch;
-            public UIntPtr ScratchWords;
-            /// <summary>out: sorted by `part`; null, with a capacity of 0: count only</summary>
-            public Penetration* Penetrations;
-            public UIntPtr PenetrationCapacity;
-            /// <summary>as of an sc_penetration_job</summary>
-            public uint Classes;
-            public UIntPtr PenetrationCount;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Allocator  // sc_allocator
         {
             public IntPtr Allocate;
@@ -763,7 +510,6 @@ namespace Spherechain
             public void* User;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct ModelDef  // sc_model_def
         {
             /// <summary>the bytes of a .sphc file, copied</summary>
@@ -777,7 +523,6 @@ namespace Spherechain
             public Allocator* Allocator;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct BodyDef  // sc_body_def
         {
             public UIntPtr MaxTriangles;
@@ -791,14 +536,12 @@ namespace Spherechain
             public Allocator* Allocator;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Query  // sc_query
         {
             public Scope Scope;
             public Detail Detail;
             /// <summary>of a body with itself, by spheres and regions; null: the asset's ignored pairs</summary>
             public Filter* Filter;
-            /// <summary>sc_part_words() words: bit p: body part p meets nothing; null: all meet</summary>
             public ulong* IgnoredParts;
             public ulong* IgnoredPartsOfOther;
             /// <summary>null: sc_default_rule()</summary>
@@ -817,46 +560,37 @@ namespace Spherechain
             public Target Target;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Penetrations  // sc_penetrations
         {
             public Penetration* Items;
-            public UIntPtr Count;
-            public UIntPtr Total;
+            public UIntPtr Count, Total;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Contacts  // sc_contacts
         {
             public PartContact* Parts;
             public UIntPtr PartCount;
             public Pair* Spheres;
-            public UIntPtr SphereCount;
-            public UIntPtr SphereTotal;
+            public UIntPtr SphereCount, SphereTotal;
             public TriangleContact* Triangles;
-            public UIntPtr TriangleCount;
-            public UIntPtr TriangleTotal;
+            public UIntPtr TriangleCount, TriangleTotal;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct SpherePairs  // sc_sphere_pairs
         {
             /// <summary>the asset's, in the pose</summary>
             public Sphere* Spheres;
             public UIntPtr SphereCount;
             public Pair* Pairs;
-            public UIntPtr Count;
-            public UIntPtr Total;
+            public UIntPtr Count, Total;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Steps  // sc_steps
         {
             public StepContact* Items;
             public UIntPtr Count;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Ground  // sc_ground
         {
             /// <summary>of unit length</summary>
@@ -867,7 +601,6 @@ namespace Spherechain
             public void* User;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct CrowdJob  // sc_crowd_job
         {
             public Asset* Asset;
@@ -900,270 +633,50 @@ namespace Spherechain
             public UIntPtr PairCount;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct RefitJob  // sc_refit_job
-        {
-            /// <summary>open</summary>
-            public Asset* Asset;
-            /// <summary>bones or vertices</summary>
-            public Pose Pose;
-            public Radius Radius;
-            public Target Target;
-            /// <summary>out: the asset's, in its order; in the pose's space</summary>
-            public Sphere* Spheres;
-            public UIntPtr SphereCapacity;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct Motion  // sc_motion
-        {
-            public JobBody Body;
-            public Pose End;
-            public Blend Blend;
-            public JointTransform* StartJoints;
-            public JointTransform* EndJoints;
-            /// <summary>at most 65536</summary>
-            public UIntPtr JointCount;
-            /// <summary>of a joint an earlier one, or SC_NO_JOINT; null: of all SC_NO_JOINT</summary>
-            public uint* Parents;
-            /// <summary>of each bone of the asset: sc_bind_joints(); null: joint b moves bone b</summary>
-            public uint* JointOfBone;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct StepJob  // sc_step_job
-        {
-            public Motion A;
-            public Motion B;
-            /// <summary>the same contacts, and times, on every one</summary>
-            public Target Target;
-            /// <summary>of one body; null: the asset's ignored pairs</summary>
-            public Filter* Filter;
-            /// <summary>a share of the height of a's asset; 0: 0.0001</summary>
-            public float Tolerance;
-            /// <summary>sc_step_scratch_words() words; nothing is kept there between runs</summary>
-            public ulong* Scratch;
-            public UIntPtr ScratchWords;
-            public StepContact* Contacts;
-            public UIntPtr ContactCapacity;
-            /// <summary>out: how many there are, also where `contacts` is too small</summary>
-            public UIntPtr ContactCount;
-        }
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern byte* sc_code_text(Code code);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern byte* sc_field_name(Field field);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern byte* sc_target_name(Target target);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Target* sc_supported_targets(UIntPtr* count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern uint sc_abi_version();
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_asset_open(Asset* asset, uint abi, void* data, UIntPtr size, byte* message, UIntPtr message_size);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern int sc_asset_is_open(Asset* asset);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern AssetInfo sc_asset_get_info(Asset* asset);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern RestSphere sc_asset_sphere(Asset* asset, UIntPtr index);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Bone sc_asset_bone(Asset* asset, UIntPtr index);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Part sc_asset_part(Asset* asset, UIntPtr index);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern byte* sc_asset_morph_name(Asset* asset, UIntPtr index);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern byte* sc_asset_region_name(Asset* asset, UIntPtr index);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern SourceBuffer sc_asset_source_buffer(Asset* asset, UIntPtr index);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern ulong sc_hash_positions(float* positions, UIntPtr count, UIntPtr stride);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_check_source(Asset* asset, UIntPtr buffer, float* positions, UIntPtr count, UIntPtr stride);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Rule sc_default_rule();
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern PenetrationClass sc_classify(Rule* rule, Measures* measures);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern byte* sc_penetration_class_name(PenetrationClass kind);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_pair_words(Asset* asset);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_reset_filter(Asset* asset, Filter* filter);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_ignore_pair(Asset* asset, Filter* filter, uint a, uint b, int ignored);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_ignore_regions(Asset* asset, Filter* filter, UIntPtr region, UIntPtr other, int ignored);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_detect(DetectJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_detect_table_words(Asset* asset);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_prepare_detect(Asset* asset, Radius radius, Filter* filter, ulong* words, UIntPtr word_count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_bind_joints(Asset* asset, Bone* joints, UIntPtr joint_count, MatrixLayout inverse_bind_layout, uint* joint_of_bone, UIntPtr capacity, byte* message, UIntPtr message_size);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_gather_bones(Asset* asset, uint* joint_of_bone, Pose* palette, float* bones);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_place_bones(JointTransform* transform, float* bones, UIntPtr bone_count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_check_rest_pose(Asset* asset, Pose* pose, byte* message, UIntPtr message_size);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_skin_contacts(SkinContactJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_skin_table_words(Asset* asset);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_prepare_skin(Asset* asset, ulong* words, UIntPtr word_count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_skin_scratch_words(Asset* asset);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_measure_penetrations(PenetrationJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_penetration_scratch_words(Asset* asset, UIntPtr contact_count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_body_contacts(BodyContactJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_body_scratch_words(Asset* a, Asset* b);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_measure_body_penetrations(BodyPenetrationJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_body_penetration_scratch_words(Asset* a, Asset* b, UIntPtr contact_count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_floor_penetrations(FloorJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_floor_scratch_words(Asset* asset);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_bound_body(JobBody* body, Vec3* low, Vec3* high);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_meetings(SceneJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_scene_scratch_words(UIntPtr body_count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_part_words(Asset* asset);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_create_model(uint abi, ModelDef* def, IntPtr* model, byte* message, UIntPtr message_size);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern void sc_destroy_model(IntPtr model);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Asset* sc_get_asset(IntPtr model);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern uint sc_get_part_joint(IntPtr model, uint part);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Triangle sc_get_triangle(IntPtr model, uint triangle);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_check_rest(IntPtr model, Pose* palette, byte* message, UIntPtr message_size);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_create_body(IntPtr model, BodyDef* def, IntPtr* body);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern void sc_destroy_body(IntPtr body);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_set_pose(IntPtr body, Pose* pose, JointTransform* place);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_penetrations(IntPtr body, IntPtr other, Query* query, Penetrations* found);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_contacts(IntPtr body, IntPtr other, Query* query, Contacts* found);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_sphere_pairs(IntPtr body, Query* query, SpherePairs* found);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_steps(IntPtr body, IntPtr other, Query* query, Steps* found);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_in_ground(IntPtr body, Ground* ground, Query* query, Penetrations* found);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_get_bounds(IntPtr body, Vec3* low, Vec3* high);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_character_create(uint abi, void* data, UIntPtr size, Bone* joints, UIntPtr joint_count, MatrixLayout inverse_bind_layout, IntPtr* character, byte* message, UIntPtr message_size);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern void sc_character_destroy(IntPtr character);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Asset* sc_character_asset(IntPtr character);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_character_check_rest(IntPtr character, Pose* palette, byte* message, UIntPtr message_size);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_character_contacts(IntPtr character, Pose* palette, PartContact** contacts, UIntPtr* count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_character_penetrations(IntPtr character, Pose* palette, Penetration** penetrations, UIntPtr* count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_detect_crowd(CrowdJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_crowd_scratch_words(Asset* asset, UIntPtr task_count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_refit(RefitJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_step_contacts(StepJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_step_scratch_words(Motion* a, Motion* b);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_code_text(Code code);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_field_name(Field field);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_target_name(Target target);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Target* sc_supported_targets(UIntPtr* count);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern uint sc_abi_version();
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_asset_open(Asset* asset, uint abi, void* data, UIntPtr size, byte* message, UIntPtr message_size);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern int sc_asset_is_open(Asset* asset);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern AssetInfo sc_asset_get_info(Asset* asset);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern RestSphere sc_asset_sphere(Asset* asset, UIntPtr index);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Bone sc_asset_bone(Asset* asset, UIntPtr index);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Part sc_asset_part(Asset* asset, UIntPtr index);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_asset_morph_name(Asset* asset, UIntPtr index);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_asset_region_name(Asset* asset, UIntPtr index);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern SourceBuffer sc_asset_source_buffer(Asset* asset, UIntPtr index);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern ulong sc_hash_positions(float* positions, UIntPtr count, UIntPtr stride);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_check_source(Asset* asset, UIntPtr buffer, float* positions, UIntPtr count, UIntPtr stride);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Rule sc_default_rule();
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern PenetrationClass sc_classify(Rule* rule, Measures* measures);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_penetration_class_name(PenetrationClass kind);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_pair_words(Asset* asset);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_reset_filter(Asset* asset, Filter* filter);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_ignore_pair(Asset* asset, Filter* filter, uint a, uint b, int ignored);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_ignore_regions(Asset* asset, Filter* filter, UIntPtr region, UIntPtr other, int ignored);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_bind_joints(Asset* asset, Bone* joints, UIntPtr joint_count, MatrixLayout inverse_bind_layout, uint* joint_of_bone, UIntPtr capacity, byte* message, UIntPtr message_size);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_gather_bones(Asset* asset, uint* joint_of_bone, Pose* palette, float* bones);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_meetings(SceneJob* job);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_scene_scratch_words(UIntPtr body_count);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_part_words(Asset* asset);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_create_model(uint abi, ModelDef* def, IntPtr* model, byte* message, UIntPtr message_size);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern void sc_destroy_model(IntPtr model);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Asset* sc_get_asset(IntPtr model);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern uint sc_get_part_joint(IntPtr model, uint part);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Triangle sc_get_triangle(IntPtr model, uint triangle);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_check_rest(IntPtr model, Pose* palette, byte* message, UIntPtr message_size);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_create_body(IntPtr model, BodyDef* def, IntPtr* body);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern void sc_destroy_body(IntPtr body);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_set_pose(IntPtr body, Pose* pose, JointTransform* place);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_penetrations(IntPtr body, IntPtr other, Query* query, Penetrations* found);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_contacts(IntPtr body, IntPtr other, Query* query, Contacts* found);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_sphere_pairs(IntPtr body, Query* query, SpherePairs* found);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_steps(IntPtr body, IntPtr other, Query* query, Steps* found);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_in_ground(IntPtr body, Ground* ground, Query* query, Penetrations* found);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_get_bounds(IntPtr body, Vec3* low, Vec3* high);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_detect_crowd(CrowdJob* job);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_crowd_scratch_words(Asset* asset, UIntPtr task_count);
     }
 }

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Spherechain for C#: an asset, the short way for a game (Character), and the mirror between right- and left-handed axes.
-// For netstandard 2.0, Unity 2021 and mono; C# 7. What is here allocates when it is made and never in a frame. Every error
-// is a SpherechainException. docs/csharp.md is the guide.
+// Spherechain for C#: a Model, what is wrong with what it was given, and the mirror between right- and left-handed axes. A Body
+// is in Spherechain.Body.cs. For netstandard 2.0, Unity 2021 and mono; C# 7. Objects allocate when they are made, never in a
+// frame. Every error is a SpherechainException. docs/csharp.md is the guide.
 using System;
 using System.IO;
-using System.Runtime.InteropServices;
 using System.Text;
-using System.Threading;
 
 namespace Spherechain
 {
@@ -57,6 +55,23 @@ namespace Spherechain
             throw new SpherechainException(status.Code, status.Field, text);
         }
 
+        /// <summary>How many floats a matrix has.</summary>
+        internal static int Floats(MatrixLayout layout)
+        {
+            if (layout == MatrixLayout.Rows3x4 || layout == MatrixLayout.Columns3x4) return 12;
+            if (layout == MatrixLayout.Rows4x4 || layout == MatrixLayout.Columns4x4) return 16;
+            throw new SpherechainException(Code.BadValue, Field.BoneLayout, "say how the matrices lie in memory: a MatrixLayout");
+        }
+
+        internal static Native.Pose PoseOf(float* palette, int floats, MatrixLayout layout)
+        {
+            Native.Pose pose = default(Native.Pose);
+            pose.Bones = palette;
+            pose.BoneCount = Size(floats / Floats(layout));
+            pose.BoneLayout = layout;
+            return pose;
+        }
+
         internal static UIntPtr Size(int count) { return new UIntPtr((uint)count); }
         internal static int Int(UIntPtr size) { return checked((int)size.ToUInt64()); }
 
@@ -66,105 +81,27 @@ namespace Spherechain
         }
     }
 
-    /// <summary>Memory that the garbage collector neither moves nor sees. 64-byte alignment, filled with zeros.</summary>
-    internal sealed unsafe class Memory : IDisposable
+    /// <summary>A baked character and the engine's joints. It never changes: any number of threads and bodies may share one.</summary>
+    public sealed unsafe class Model : IDisposable
     {
-        internal byte* Data { get; private set; }
-        internal long Size { get; private set; }
-        IntPtr block;
-
-        internal Memory(long size)
-        {
-            block = Marshal.AllocHGlobal(new IntPtr(size + 64));
-            Data = (byte*)(((ulong)block.ToInt64() + 63) & ~63ul);
-            Size = size;
-            for (long i = 0; i < size; ++i) Data[i] = 0;
-        }
-
-        internal ulong* Words { get { return (ulong*)Data; } }
-        internal UIntPtr WordCount { get { return new UIntPtr((ulong)(Size / 8)); } }
-
-        public void Dispose()
-        {
-            Marshal.FreeHGlobal(block);
-            block = IntPtr.Zero;
-            Data = null;
-            Size = 0;
-            GC.SuppressFinalize(this);
-        }
-
-        ~Memory() { Marshal.FreeHGlobal(block); }
-    }
-
-    /// <summary>How many floats a matrix of a layout has; the skeleton of an engine as the library takes it.</summary>
-    internal sealed unsafe class Joints : IDisposable
-    {
-        readonly Memory names, bones;
-        GCHandle matrices;
-        internal readonly int Count;
-
-        internal static int Floats(MatrixLayout layout)
-        {
-            if (layout == MatrixLayout.Rows3x4 || layout == MatrixLayout.Columns3x4) return 12;
-            if (layout == MatrixLayout.Rows4x4 || layout == MatrixLayout.Columns4x4) return 16;
-            throw new SpherechainException(Code.BadValue, Field.BoneLayout, "say how the matrices lie in memory: a MatrixLayout");
-        }
-
-        internal Joints(string[] joints, float[] inverseBinds, MatrixLayout layout)
-        {
-            Count = joints == null ? 0 : joints.Length;
-            int size = 0;
-            int floats = inverseBinds == null ? 0 : Floats(layout);
-            for (int i = 0; i < Count; ++i)
-            {
-                Text.Require(joints[i], Field.Joints, "the name of joint " + i);
-                size += Encoding.UTF8.GetByteCount(joints[i]) + 1;
-            }
-            if (inverseBinds != null && inverseBinds.Length < Count * floats)
-            {
-                throw new SpherechainException(Code.TooSmall, Field.Joints, "fewer inverse bind matrices than joints");
-            }
-            names = new Memory(size);
-            bones = new Memory((long)Count * sizeof(Native.Bone));
-            float* first = null;
-            if (inverseBinds != null)
-            {
-                matrices = GCHandle.Alloc(inverseBinds, GCHandleType.Pinned);
-                first = (float*)matrices.AddrOfPinnedObject();
-            }
-            byte* name = names.Data;
-            for (int i = 0; i < Count; ++i)
-            {
-                byte[] utf8 = Encoding.UTF8.GetBytes(joints[i]);
-                Marshal.Copy(utf8, 0, new IntPtr(name), utf8.Length);
-                Bones[i].Name = name;
-                Bones[i].InverseBind = first == null ? null : first + (long)i * floats;
-                name += utf8.Length + 1;
-            }
-        }
-
-        internal Native.Bone* Bones { get { return (Native.Bone*)bones.Data; } }
-
-        public void Dispose()
-        {
-            names.Dispose();
-            bones.Dispose();
-            if (matrices.IsAllocated) matrices.Free();
-        }
-    }
-
-    /// <summary>A baked character, read only: any number of threads may share one. Its numbers and names are read once.</summary>
-    public sealed unsafe class Asset : IDisposable
-    {
-        internal Native.Asset* View { get; private set; }
-        readonly Memory memory;  // null where another object owns the asset
-        internal readonly object Owner;  // kept from the garbage collector
+        IntPtr handle;
         readonly Native.AssetInfo info;
+
+        /// <summary>For calls of Native. Throws where the model is disposed.</summary>
+        public IntPtr Handle
+        {
+            get
+            {
+                if (handle == IntPtr.Zero) throw new SpherechainException(Code.NotOpen, Field.Asset, "the model is disposed");
+                return handle;
+            }
+        }
 
         public int SphereCount { get { return Text.Int(info.SphereCount); } }
         public int BoneCount { get { return Text.Int(info.BoneCount); } }
         public int PartCount { get { return Text.Int(info.PartCount); } }
         public int MorphCount { get { return Text.Int(info.MorphCount); } }
+        public int RegionCount { get { return Text.Int(info.RegionCount); } }
         public int VertexCount { get { return Text.Int(info.VertexCount); } }
         public int TriangleCount { get { return Text.Int(info.TriangleCount); } }
         public float MetresPerUnit { get { return info.MetresPerUnit; } }
@@ -182,248 +119,137 @@ namespace Spherechain
         public string[] PartNames { get; private set; }
         public string[] BoneNames { get; private set; }
         public string[] MorphNames { get; private set; }
+        public string[] RegionNames { get; private set; }
 
-        /// <summary>Copies the file's bytes and verifies them. Hostile bytes are refused or harmless.</summary>
-        public Asset(byte[] file)
+        /// <summary>`file`: the .sphc file's bytes; they are verified and copied. `joints`: the names of the engine's joints in the
+        /// order of its palettes; null: palettes come in the asset's order. `inverseBinds`: a matrix for each joint, in `layout`;
+        /// null: not compared. With them, another rest pose, unit or handedness is refused (Code.OtherBind).</summary>
+        public Model(byte[] file, string[] joints = null, float[] inverseBinds = null,
+                     MatrixLayout layout = MatrixLayout.LayoutUnset)
         {
             Text.Require(file, Field.Data, "the file");
-            memory = new Memory(sizeof(Native.Asset) + (long)file.Length);
-            View = (Native.Asset*)memory.Data;
-            byte* data = memory.Data + sizeof(Native.Asset);  // 1024 bytes: the alignment stays
-            Marshal.Copy(file, 0, new IntPtr(data), file.Length);
+            int count = joints == null ? 0 : joints.Length;
+            int floats = inverseBinds == null ? 0 : Text.Floats(layout);
+            for (int i = 0; i < count; ++i) Text.Require(joints[i], Field.Joints, "the name of joint " + i);
+            if (inverseBinds != null && inverseBinds.Length < count * floats)
+            {
+                throw new SpherechainException(Code.TooSmall, Field.Joints, "fewer inverse bind matrices than joints");
+            }
+            byte[] names = Encoding.UTF8.GetBytes(count == 0 ? "" : string.Join("\0", joints) + "\0");
+            Native.Bone[] bones = new Native.Bone[count + 1];  // `fixed` makes null of an empty array
             byte* message = stackalloc byte[Text.MessageSize];
             message[0] = 0;
-            Text.Check(Native.sc_asset_open(View, Native.AbiVersion, data, Text.Size(file.Length), message,
-                                            Text.Size(Text.MessageSize)), message);
-            info = Native.sc_asset_get_info(View);
-            ReadNames();
-        }
-
-        public Asset(string path) : this(File.ReadAllBytes(path)) { }
-
-        internal Asset(Native.Asset* view, object owner)
-        {
-            View = view;
-            Owner = owner;
-            info = Native.sc_asset_get_info(view);
-            ReadNames();
-        }
-
-        void ReadNames()
-        {
+            fixed (byte* data = file.Length == 0 ? new byte[1] : file, name = names)
+            fixed (float* binds = inverseBinds)
+            fixed (Native.Bone* bone = bones)
+            fixed (IntPtr* made = &handle)
+            {
+                int at = 0;
+                for (int i = 0; i < count; at += Encoding.UTF8.GetByteCount(joints[i++]) + 1)
+                {
+                    bone[i].Name = name + at;
+                    bone[i].InverseBind = binds == null ? null : binds + (long)i * floats;
+                }
+                Native.ModelDef def = default(Native.ModelDef);
+                def.Data = data;
+                def.Size = Text.Size(file.Length);
+                def.Joints = joints == null ? null : bone;
+                def.JointCount = Text.Size(count);
+                def.InverseBindLayout = inverseBinds == null ? MatrixLayout.Columns4x4 : layout;
+                Text.Check(Native.sc_create_model(Native.AbiVersion, &def, made, message, Text.Size(Text.MessageSize)), message);
+            }
+            Native.Asset* asset = Native.sc_get_asset(handle);
+            info = Native.sc_asset_get_info(asset);
             Writer = Text.Of(info.Writer);
             SourceFile = Text.Of(info.SourceFile);
             SourceSha256 = Text.Of(info.SourceSha256);
             Settings = Text.Of(info.Settings);
             PartNames = new string[PartCount];
-            for (int i = 0; i < PartNames.Length; ++i) PartNames[i] = Text.Of(Native.sc_asset_part(View, Text.Size(i)).Name);
             BoneNames = new string[BoneCount];
-            for (int i = 0; i < BoneNames.Length; ++i) BoneNames[i] = Text.Of(Native.sc_asset_bone(View, Text.Size(i)).Name);
             MorphNames = new string[MorphCount];
-            for (int i = 0; i < MorphNames.Length; ++i) MorphNames[i] = Text.Of(Native.sc_asset_morph_name(View, Text.Size(i)));
+            RegionNames = new string[RegionCount];
+            for (int i = 0; i < PartCount; ++i) PartNames[i] = Text.Of(Native.sc_asset_part(asset, Text.Size(i)).Name);
+            for (int i = 0; i < BoneCount; ++i) BoneNames[i] = Text.Of(Native.sc_asset_bone(asset, Text.Size(i)).Name);
+            for (int i = 0; i < MorphCount; ++i) MorphNames[i] = Text.Of(Native.sc_asset_morph_name(asset, Text.Size(i)));
+            for (int i = 0; i < RegionCount; ++i) RegionNames[i] = Text.Of(Native.sc_asset_region_name(asset, Text.Size(i)));
         }
 
-        internal Native.Asset* Open()
-        {
-            if (View == null) throw new SpherechainException(Code.NotOpen, Field.Asset, "the asset is disposed");
-            return View;
-        }
+        public Model(string path) : this(File.ReadAllBytes(path)) { }
 
-        /// <summary>The bone that a part follows, or -1.</summary>
-        public int PartBone(int part) { return At(part, PartCount, Native.sc_asset_part(Open(), Index(part)).Bone); }
-        /// <summary>The part that a part hangs on, or -1.</summary>
-        public int PartParent(int part) { return At(part, PartCount, Native.sc_asset_part(Open(), Index(part)).Parent); }
-        public Side PartSide(int part) { return At(part, PartCount, Native.sc_asset_part(Open(), Index(part)).Side); }
-        /// <summary>A sphere at rest, in source units.</summary>
-        public RestSphere RestSphere(int sphere) { return At(sphere, SphereCount, Native.sc_asset_sphere(Open(), Index(sphere))); }
-
-        /// <summary>From the rest pose to the bone's space: 12 floats, Rows3x4, written to `matrix` from `at` on.</summary>
-        public void InverseBind(int bone, float[] matrix, int at = 0)
-        {
-            float* found = Native.sc_asset_bone(Open(), Index(bone)).InverseBind;
-            At(bone, BoneCount, 0);
-            Text.Require(matrix, Field.Output, "the matrix");
-            if (at < 0 || at > matrix.Length - 12) throw new SpherechainException(Code.TooSmall, Field.Output, "12 floats are written");
-            for (int i = 0; i < 12; ++i) matrix[at + i] = found == null ? (i % 5 == 0 ? 1 : 0) : found[i];
-            GC.KeepAlive(this);
-        }
-
-        static UIntPtr Index(int index) { return index < 0 ? new UIntPtr(uint.MaxValue) : Text.Size(index); }
-
-        T At<T>(int index, int count, T value)
-        {
-            GC.KeepAlive(this);
-            if (index >= 0 && index < count) return value;
-            throw new SpherechainException(Code.BadValue, Field.Index, index + " is none of " + count);
-        }
-
-        /// <summary>Nothing may use the asset any more. The asset of a Character goes with that.</summary>
-        public void Dispose()
-        {
-            if (memory == null) return;
-            View = null;
-            memory.Dispose();
-        }
-
-        internal void Close() { View = null; }
-    }
-
-    /// <summary>The short way for a game: an asset, its binding to the engine's joints, and its working memory. One object
-    /// serves any number of characters of one asset, one at a time: make one a thread. A second thread at the same time gets
-    /// an exception.</summary>
-    public sealed unsafe class Character : IDisposable
-    {
-        IntPtr handle;
-        int busy;
-
-        public Asset Asset { get; private set; }
-        /// <summary>What the last FindPenetrations() found: the first PenetrationCount entries. It stays the same array.</summary>
-        public Penetration[] Penetrations { get; private set; }
-        public int PenetrationCount { get; private set; }
-        /// <summary>What the last FindContacts() found: the first ContactCount entries. It stays the same array.</summary>
-        public PartContact[] Contacts { get; private set; }
-        public int ContactCount { get; private set; }
-
-        /// <summary>`file`: the .sphc file's bytes; they are copied. `joints`: the names of the engine's joints in the order of
-        /// its palette; null: palettes come in the asset's order. `inverseBinds`: a matrix for each joint, in `layout`; null:
-        /// not compared. With them, another rest pose, unit or handedness is refused (Code.OtherBind).</summary>
-        public Character(byte[] file, string[] joints = null, float[] inverseBinds = null,
-                         MatrixLayout layout = MatrixLayout.LayoutUnset)
-        {
-            Text.Require(file, Field.Data, "the file");
-            byte* message = stackalloc byte[Text.MessageSize];
-            message[0] = 0;
-            using (Joints taken = new Joints(joints, inverseBinds, layout))
-            {
-                IntPtr made = IntPtr.Zero;
-                Status status;
-                // The library copies from memory that is aligned.
-                using (Memory bytes = new Memory(file.Length))
-                {
-                    Marshal.Copy(file, 0, new IntPtr(bytes.Data), file.Length);
-                    status = Native.sc_character_create(
-                        Native.AbiVersion, bytes.Data, Text.Size(file.Length), joints == null ? null : taken.Bones,
-                        Text.Size(taken.Count), inverseBinds == null ? MatrixLayout.Columns4x4 : layout, &made, message,
-                        Text.Size(Text.MessageSize));
-                }
-                Text.Check(status, message);
-                handle = made;
-            }
-            Asset = new Asset(Native.sc_character_asset(handle), this);
-            int pairs = Asset.PartCount * (Asset.PartCount + 1) / 2;
-            Penetrations = new Penetration[pairs];
-            Contacts = new PartContact[pairs];
-        }
-
-        /// <summary>For the first run: `palette` of the bind pose, the character off the origin and turned. Throws
+        /// <summary>The rest pose's self-check, once: `palette` of the bind pose, the character off the origin and turned. Throws
         /// (Code.OtherBind) where the matrices are not skinning matrices of this character, and names the bone.</summary>
         public void CheckRest(float[] palette, MatrixLayout layout)
         {
             Text.Require(palette, Field.Bones, "the palette");
             byte* message = stackalloc byte[Text.MessageSize];
             message[0] = 0;
-            Enter();
-            try
+            fixed (float* first = palette)
             {
-                fixed (float* first = palette)
-                {
-                    Native.Pose pose = PoseOf(first, palette.Length / Joints.Floats(layout), layout);
-                    Text.Check(Native.sc_character_check_rest(handle, &pose, message, Text.Size(Text.MessageSize)), message);
-                }
+                Native.Pose pose = Text.PoseOf(first, palette.Length, layout);
+                Text.Check(Native.sc_check_rest(Handle, &pose, message, Text.Size(Text.MessageSize)), message);
             }
-            finally { Leave(); }
-        }
-
-        /// <summary>Which pairs of body parts intersect, with depth and direction. `palette`: for each joint the skinning
-        /// matrix, world times inverse bind. Returns PenetrationCount. Code.Overflow: so much intersects that there is no room
-        /// to measure; ask FindContacts().</summary>
-        public int FindPenetrations(float[] palette, MatrixLayout layout)
-        {
-            Text.Require(palette, Field.Bones, "the palette");
-            fixed (float* first = palette) return FindPenetrations(first, palette.Length / Joints.Floats(layout), layout);
-        }
-
-        public int FindPenetrations(float* palette, int count, MatrixLayout layout)
-        {
-            PenetrationCount = 0;
-            Enter();
-            try
-            {
-                Native.Pose pose = PoseOf(palette, count, layout);
-                Penetration* found = null;
-                UIntPtr size;
-                Text.Check(Native.sc_character_penetrations(handle, &pose, &found, &size));
-                int n = Text.Int(size);
-                if (n > Penetrations.Length) Penetrations = new Penetration[n];  // never: there are no more pairs of parts
-                for (int i = 0; i < n; ++i) Penetrations[i] = found[i];
-                return PenetrationCount = n;
-            }
-            finally { Leave(); }
-        }
-
-        /// <summary>Which pairs of body parts intersect, with a box around the place. Cheaper. Returns ContactCount.</summary>
-        public int FindContacts(float[] palette, MatrixLayout layout)
-        {
-            Text.Require(palette, Field.Bones, "the palette");
-            fixed (float* first = palette) return FindContacts(first, palette.Length / Joints.Floats(layout), layout);
-        }
-
-        public int FindContacts(float* palette, int count, MatrixLayout layout)
-        {
-            ContactCount = 0;
-            Enter();
-            try
-            {
-                Native.Pose pose = PoseOf(palette, count, layout);
-                PartContact* found = null;
-                UIntPtr size;
-                Text.Check(Native.sc_character_contacts(handle, &pose, &found, &size));
-                int n = Text.Int(size);
-                if (n > Contacts.Length) Contacts = new PartContact[n];
-                for (int i = 0; i < n; ++i) Contacts[i] = found[i];
-                return ContactCount = n;
-            }
-            finally { Leave(); }
-        }
-
-        internal static Native.Pose PoseOf(float* palette, int count, MatrixLayout layout)
-        {
-            Native.Pose pose = default(Native.Pose);
-            pose.Bones = palette;
-            pose.BoneCount = Text.Size(count);
-            pose.BoneLayout = layout;
-            return pose;
-        }
-
-        void Enter()
-        {
-            if (Interlocked.CompareExchange(ref busy, 1, 0) != 0)
-            {
-                throw new SpherechainException(Code.Aliased, Field.Scratch, "the character is in use: make one a thread");
-            }
-            if (handle != IntPtr.Zero) return;
-            busy = 0;
-            throw new SpherechainException(Code.NotOpen, Field.Asset, "the character is disposed");
-        }
-
-        void Leave()
-        {
-            Volatile.Write(ref busy, 0);
             GC.KeepAlive(this);
         }
 
+        /// <summary>Null of what is no part: Native.Floor.</summary>
+        public string PartName(uint part) { return part < PartNames.Length ? PartNames[part] : null; }
+        /// <summary>The engine's joint that moves a part; Native.NoJoint where none does.</summary>
+        public uint PartJoint(uint part) { return Kept(Native.sc_get_part_joint(Handle, part)); }
+        /// <summary>The bone that a part follows, or -1.</summary>
+        public int PartBone(int part) { return Part(part).Bone; }
+        /// <summary>The part that a part hangs on, or -1.</summary>
+        public int PartParent(int part) { return Part(part).Parent; }
+        public Side PartSide(int part) { return Part(part).Side; }
+        /// <summary>What a triangle of the source belongs to; Native.NoPart where it was left out of the skin.</summary>
+        public Triangle Triangle(uint triangle) { return Kept(Native.sc_get_triangle(Handle, triangle)); }
+        /// <summary>A sphere at rest, in source units.</summary>
+        public RestSphere RestSphere(int sphere) { return Kept(Native.sc_asset_sphere(Asset, Index(sphere, SphereCount))); }
+        /// <summary>A length in the units of a pose that has the asset's scale.</summary>
+        public float Millimetres(float length) { return 1000 * length * MetresPerUnit; }
+
+        /// <summary>From the rest pose to the bone's space: 12 floats, Rows3x4, written to `matrix` from `at` on.</summary>
+        public void InverseBind(int bone, float[] matrix, int at = 0)
+        {
+            float* found = Native.sc_asset_bone(Asset, Index(bone, BoneCount)).InverseBind;
+            Text.Require(matrix, Field.Output, "the matrix");
+            if (at < 0 || at > matrix.Length - 12) throw new SpherechainException(Code.TooSmall, Field.Output, "12 floats are written");
+            for (int i = 0; i < 12; ++i) matrix[at + i] = found == null ? (i % 5 == 0 ? 1 : 0) : found[i];
+            GC.KeepAlive(this);
+        }
+
+        /// <summary>For Query.IgnoredParts: a bit for each of these parts.</summary>
+        public ulong[] PartSet(params int[] parts)
+        {
+            ulong[] words = new ulong[(PartCount + 63) / 64];
+            foreach (int part in parts) words[Index(part, PartCount).ToUInt64() / 64] |= 1ul << (part % 64);
+            return words;
+        }
+
+        internal Native.Asset* Asset { get { return Native.sc_get_asset(Handle); } }
+
+        Native.Part Part(int part) { return Native.sc_asset_part(Asset, Index(part, PartCount)); }
+
+        static UIntPtr Index(int index, int count)
+        {
+            if (index < 0 || index >= count) throw new SpherechainException(Code.BadValue, Field.Index, index + " is none of " + count);
+            return Text.Size(index);
+        }
+
+        T Kept<T>(T value)
+        {
+            GC.KeepAlive(this);
+            return value;
+        }
+
+        /// <summary>Its bodies are of no use any more.</summary>
         public void Dispose()
         {
-            if (handle == IntPtr.Zero) return;
-            Enter();
-            Native.sc_character_destroy(handle);
+            if (handle != IntPtr.Zero) Native.sc_destroy_model(handle);
             handle = IntPtr.Zero;
-            Asset.Close();
-            Leave();
             GC.SuppressFinalize(this);
         }
 
-        ~Character() { if (handle != IntPtr.Zero) Native.sc_character_destroy(handle); }
+        ~Model() { if (handle != IntPtr.Zero) Native.sc_destroy_model(handle); }
     }
 
     public enum Axis { None, X, Y, Z }

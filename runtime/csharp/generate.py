@@ -8,17 +8,21 @@ generate.py HEADERS --layout     print a C program that prints the layout of all
 HEADERS is runtime/include. The C preprocessor (cc, or $CC) reads spherechain.h. What is neither an enum, a struct, a function
 nor a number is an error: nothing in the headers can be passed over in silence.
 """
+import itertools
 import os
 import re
 import subprocess
 import sys
 
-# What C# does without, and why.
+# Left out of C#, because Model and Body do it. Functions that take one of these structs are left out, too.
+UNUSED = re.compile(r"""sc_(?!crowd_|scene_)\w+_job | sc_job_body | sc_motion | sc_blend | sc_place_bones | sc_check_rest_pose
+    | sc_detect_table_words | sc_prepare_\w+ | sc_(?!crowd_|scene_)\w+_scratch_words | sc_skin_table_words""", re.X)
+# Constants that C# cannot have, and why.
 LEFT_OUT = {
     "SC_WHOLE_SOURCE": "its width depends on the machine: pass new UIntPtr(UIntPtr.Size == 8 ? ulong.MaxValue : uint.MaxValue)",
 }
 RENAMED = {"sc_transform": "JointTransform"}  # Transform is UnityEngine's
-OPAQUE = {"sc_body", "sc_character", "sc_model"}  # handles: IntPtr
+OPAQUE = {"sc_body", "sc_model"}  # handles: IntPtr
 NUMBERS = {"void": "void", "char": "byte", "int": "int", "float": "float", "int32_t": "int", "uint32_t": "uint",
            "uint64_t": "ulong", "size_t": "UIntPtr"}
 KEYWORDS = {"in", "out", "ref", "params", "object", "string", "lock", "fixed", "base", "this", "is", "as", "event", "checked"}
@@ -63,6 +67,7 @@ class Header:
         marks = len(re.findall(r"^SPHERECHAIN_API ", self.raw, re.M))
         if marks != len(self.functions):
             fail("the headers mark %d functions, %d were read" % (marks, len(self.functions)))
+        self.leave_out()
         for line in sorted(preprocess(headers, "-dM").split("\n")):
             define = re.match(r"#define (SC_\w+) (.+)", line)
             if not define or define.group(1) in ("SC_ZERO", "SC_NOEXCEPT") or define.group(1) in LEFT_OUT:
@@ -70,6 +75,13 @@ class Header:
             if not re.fullmatch(r"\d+|0x[0-9A-Fa-f]+u", define.group(2)):
                 fail("what is %s?" % line)
             self.constants[define.group(1)] = define.group(2)
+
+    def leave_out(self):
+        unused = {type_name(name) for name in list(self.structs) + list(self.enums) if UNUSED.fullmatch(name)}
+        self.enums = {name: of for name, of in self.enums.items() if type_name(name) not in unused}
+        self.structs = {name: of for name, of in self.structs.items() if type_name(name) not in unused}
+        self.functions = [f for f in self.functions
+                          if not UNUSED.fullmatch(f[0]) and not any(kind.rstrip("*") in unused for _, kind in f[2])]
 
     def parse(self, text):
         # After the preprocessor SC_ENUM is `typedef int32_t NAME; enum {...};`.
@@ -104,18 +116,18 @@ class Header:
         return re.sub(r"(\d)X(\d)", r"\1x\2", "".join(words))
 
     def struct(self, name, body, again):
-        fields = []
+        fields = []  # name, type, length, and a number that the names of one declaration share
         while body.strip():
             body = body.strip()
             callback = re.match(r"[\w \*]+\(\*(\w+)\)\((?:[^()]|\([^()]*\))*\) ?;", body)
             if callback:
-                fields.append((callback.group(1), "IntPtr", 0))
+                fields.append((callback.group(1), "IntPtr", 0, len(body)))
                 body = body[callback.end():]
                 continue
             found = re.match(r"((?:const )?\w+ ?\**) ?([\w\[\], ]+?) ?;", body) or fail("%s: what is %s?" % (name, body[:80]))
             for field in found.group(2).split(","):
                 array = re.fullmatch(r"(\w+)(?:\[(\d+)\])?", field.strip()) or fail("%s: what is %s?" % (name, field))
-                fields.append((array.group(1), self.type(found.group(1)), int(array.group(2) or 0)))
+                fields.append((array.group(1), self.type(found.group(1)), int(array.group(2) or 0), len(body)))
             body = body[found.end():]
         self.structs[name] = fields
 
@@ -142,7 +154,7 @@ class Header:
 
     def is_plain(self, name):
         """Can code that is not `unsafe` use all of it?"""
-        for _, kind, length in self.structs[name]:
+        for _, kind, length, _ in self.structs[name]:
             inner = [s for s in self.structs if type_name(s) == kind]
             if "*" in kind or kind in ("IntPtr", "UIntPtr") or length > ARRAY_MAX or (inner and not self.is_plain(inner[0])):
                 return False
@@ -162,24 +174,25 @@ def doc(text, indent):
 
 
 def struct_lines(header, name, indent):
-    plain = header.is_plain(name)
-    lines = [indent + "[StructLayout(LayoutKind.Sequential)]",
-             "%spublic %sstruct %s  // %s" % (indent, "" if plain else "unsafe ", type_name(name), name), indent + "{"]
-    for field, kind, length in header.structs[name]:
-        lines += doc(header.comment(name, field), indent + "    ")
-        if length > ARRAY_MAX:
-            lines.append("%s    public fixed %s %s[%d];" % (indent, kind, pascal(field), length))
-        else:
-            names = [pascal(field)] if not length else ["%s%d" % (pascal(field), i) for i in range(length)]
-            lines += ["%s    public %s %s;" % (indent, kind, n) for n in names]
+    """A line for each declaration of the header, as that has them."""
+    lines = ["%spublic %sstruct %s  // %s" % (indent, "" if header.is_plain(name) else "unsafe ", type_name(name), name), indent + "{"]
+    for _, group in itertools.groupby(header.structs[name], key=lambda field: field[3]):
+        names = []
+        for field, kind, length, _ in group:
+            comment = header.comment(name, field)  # behind the last
+            if length > ARRAY_MAX:
+                kind, names = "fixed " + kind, ["%s[%d]" % (pascal(field), length)]
+            else:
+                names += [pascal(field)] if not length else ["%s%d" % (pascal(field), i) for i in range(length)]
+        lines += doc(comment, indent + "    ") + ["%s    public %s %s;" % (indent, kind, ", ".join(names))]
     return lines + [indent + "}", ""]
 
 
 def native(header):
     lines = """// SPDX-License-Identifier: MIT
 // Written by runtime/csharp/generate.py from the C headers; the test csharp.native fails where it is not what they say now.
-// Types without pointers are public for all code. Jobs and functions are in the class Native, for unsafe code. The headers
-// (runtime/include/spherechain) say what each function promises; size_t is UIntPtr, and a pointer to a function an IntPtr.
+// Types without pointers are public for all code. Structs with pointers, and functions, are in the class Native, for unsafe code.
+// The headers (runtime/include/spherechain) say what each function promises; size_t is UIntPtr, a function pointer an IntPtr.
 using System;
 using System.Runtime.InteropServices;
 
@@ -201,6 +214,7 @@ namespace Spherechain
 #else
         public const string Library = "spherechain";  // spherechain.dll, libspherechain.so, libspherechain.dylib
 #endif
+        const CallingConvention Cdecl = CallingConvention.Cdecl;
 """.split("\n")
     for name, value in header.constants.items():
         lines.append("        public const uint %s = %s;" % (header.member(name[3:]), value))
@@ -212,9 +226,8 @@ namespace Spherechain
             lines += struct_lines(header, name, "        ")
     for name, result, parameters in header.functions:
         listed = ", ".join("%s %s%s" % (kind, "@" if p in KEYWORDS else "", p) for p, kind in parameters)
-        lines += ["        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]",
-                  "        public static extern %s %s(%s);" % (result, name, listed), ""]
-    lines[-1] = "    }"
+        lines.append("        [DllImport(Library, CallingConvention = Cdecl)] public static extern %s %s(%s);" % (result, name, listed))
+    lines.append("    }")
     return "\n".join(lines + ["}"])
 
 
@@ -230,7 +243,7 @@ def layout(header):
         lines.append('  printf("constant %s %%u\\n", (unsigned)%s);' % (header.member(name[3:]), name))
     for name, fields in header.structs.items():
         lines.append('  printf("struct %s: %%d bytes\\n", (int)sizeof(%s));' % (type_name(name), name))
-        for field, kind, length in fields:
+        for field, kind, length, _ in fields:
             names = [(pascal(field), field)]
             if 0 < length <= ARRAY_MAX:
                 names = [("%s%d" % (pascal(field), i), "%s[%d]" % (field, i)) for i in range(length)]

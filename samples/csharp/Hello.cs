@@ -7,35 +7,34 @@ using Spherechain;
 
 public static class Hello
 {
-    static void Play(byte[] file, Palettes model)
+    static void Play(byte[] file, Palettes clip)
     {
         // [hello]
-        // Your skeleton: names and inverse bind matrices. The character allocates here, never in a frame.
-        using (Character character = new Character(file, model.Joints, model.InverseBinds, MatrixLayout.Columns4x4))
+        // Your skeleton: names and inverse bind matrices. All memory is allocated here, never in a frame.
+        using (Model model = new Model(file, clip.Joints, clip.InverseBinds, MatrixLayout.Columns4x4))
+        using (Body body = new Body(model))
         {
-            character.CheckRest(model.Rest, MatrixLayout.Columns4x4);
-            for (int frame = 0; frame < model.Frames.Length; ++frame)
+            model.CheckRest(clip.Rest, MatrixLayout.Columns4x4);
+            for (int frame = 0; frame < clip.Frames.Length; ++frame)
             {
-                float[] palette = model.Frames[frame];  // what your skinning shader gets
-                int count = character.FindPenetrations(palette, MatrixLayout.Columns4x4);
-                for (int i = 0; i < count; ++i)
+                body.SetPose(clip.Frames[frame], MatrixLayout.Columns4x4);  // what your skinning shader gets
+                foreach (Penetration found in body.Penetrations())  // faults alone: no folds at joints, no touches
                 {
-                    Penetration found = character.Penetrations[i];
-                    if (found.Kind != PenetrationClass.Penetration) continue;  // folds at joints, touches ...
-                    Print(frame, character.Asset, found);
+                    string joint = found.Joint == Native.NoJoint ? "nothing" : clip.Joints[found.Joint];
+                    Print(frame, model, joint, found);
                 }
             }
         }
         // [/hello]
     }
 
-    static void Print(int frame, Asset asset, Penetration found)
+    static void Print(int frame, Model model, string joint, Penetration found)
     {
-        string[] parts = asset.PartNames;
-        Vec3 way = found.Direction;  // the way that the part must go
-        Console.WriteLine("frame {0}: {1} in {2}, {3} mm; out along ({4}, {5}, {6})", frame, parts[found.Part], parts[found.Other],
-                          Number(1000 * asset.MetresPerUnit * found.Measures.Depth, "F0"), Number(way.X, "F2"), Number(way.Y, "F2"),
-                          Number(way.Z, "F2"));
+        Vec3 way = found.Direction;  // moved by Distance along it, the part is free
+        Console.WriteLine("frame {0}: {1} in {2}, {3} mm; move {4} by ({5}, {6}, {7})", frame, model.PartName(found.Part),
+                          model.PartName(found.Other), Number(model.Millimetres(found.Measures.Depth), "F0"), joint,
+                          Number(found.Distance * way.X, "F3"), Number(found.Distance * way.Y, "F3"),
+                          Number(found.Distance * way.Z, "F3"));
     }
 
     // As C prints it: with the sign of -0.00.

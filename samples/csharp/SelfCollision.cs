@@ -15,14 +15,16 @@ public sealed class SelfCollision : MonoBehaviour
     public Axis mirroredAxis = Axis.X;
     [Tooltip("Length of a unit of the source file here: 0.01 where the file is in centimetres and the importer made metres of them")]
     public float sourceUnit = 1;
+    [Tooltip("Keep the way out of the last frame while it is nearly the shortest, so that it does not flicker")]
+    public bool keepsDirections = true;
 
-    /// <summary>The last frame's: the first PenetrationCount entries are valid. Its positions are the source's: see
-    /// Position() and Direction().</summary>
-    public Penetration[] Penetrations { get { return character.Penetrations; } }
-    public int PenetrationCount { get; private set; }
-    public string PartName(uint part) { return character.Asset.PartNames[part]; }
+    /// <summary>The last frame's, the worst first; null while disabled. Its positions are the source's: see Position() and
+    /// Direction().</summary>
+    public Results<Penetration> Penetrations { get; private set; }
+    public string PartName(uint part) { return model.PartName(part); }
 
-    Character character;
+    Model model;  // characters of one asset can share it
+    Body body;
     Transform[] bones;
     Matrix4x4[] bindposes;
     float[] palette;
@@ -42,9 +44,11 @@ public sealed class SelfCollision : MonoBehaviour
 
     void OnDisable()
     {
-        PenetrationCount = 0;
-        if (character != null) character.Dispose();
-        character = null;
+        Penetrations = null;
+        if (body != null) body.Dispose();
+        if (model != null) model.Dispose();
+        body = null;
+        model = null;
     }
 
     // Once: `bones` and `bindposes` of a renderer are copies, made anew at each call.
@@ -70,20 +74,16 @@ public sealed class SelfCollision : MonoBehaviour
             names[i] = bones[i].name;
             ToSource(bindposes[i], inverseBinds, 16 * i);
         }
-        character = new Character(asset.bytes, names, inverseBinds, MatrixLayout.Columns4x4);
+        model = new Model(asset.bytes, names, inverseBinds, MatrixLayout.Columns4x4);
+        body = new Body(model);
     }
 
     void LateUpdate()
     {
         FillPalette();
-        try
-        {
-            PenetrationCount = character.FindPenetrations(palette, MatrixLayout.Columns4x4);
-        }
-        catch (SpherechainException error) when (error.Code == Code.Overflow)
-        {
-            PenetrationCount = 0;  // a pose so broken that there is no room to measure it
-        }
+        body.SetPose(palette, MatrixLayout.Columns4x4);
+        // Folds at joints and touches, too.
+        Penetrations = body.Penetrations(new Query { Classes = Query.AllClasses, Previous = keepsDirections ? Penetrations : null });
     }
 
     // World times bind pose, as a skinning shader has it, but in this object's space: its place and scale do not matter.
@@ -126,7 +126,7 @@ public sealed class SelfCollision : MonoBehaviour
         FillPalette();
         try
         {
-            character.CheckRest(palette, MatrixLayout.Columns4x4);
+            model.CheckRest(palette, MatrixLayout.Columns4x4);
             Debug.Log("SelfCollision: the matrices fit", this);
         }
         catch (SpherechainException error)
@@ -137,15 +137,15 @@ public sealed class SelfCollision : MonoBehaviour
 
     void OnDrawGizmosSelected()
     {
+        if (Penetrations == null) return;
         Gizmos.matrix = transform.localToWorldMatrix;
-        for (int i = 0; i < PenetrationCount; ++i)
+        foreach (Penetration found in Penetrations)
         {
-            Penetration found = character.Penetrations[i];
             // From DeepFold on it is a fault; folds at joints and touches are small and green.
             bool isFault = found.Kind >= PenetrationClass.DeepFold;
             Gizmos.color = isFault ? Color.red : Color.green;
             Vector3 from = Position(found.Deepest.Position);
-            Gizmos.DrawSphere(from, sourceUnit * character.Asset.Height * (isFault ? 0.01f : 0.004f));
+            Gizmos.DrawSphere(from, sourceUnit * model.Height * (isFault ? 0.01f : 0.004f));
             Gizmos.DrawLine(from, from + Direction(found));
         }
     }

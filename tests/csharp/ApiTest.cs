@@ -9,6 +9,7 @@ using Spherechain;
 public static class ApiTest
 {
     const MatrixLayout kColumns = MatrixLayout.Columns4x4;
+    static readonly Query all = new Query { Classes = Query.AllClasses };
     static float[] deepest;
     static int checks, failures;
 
@@ -34,205 +35,286 @@ public static class ApiTest
         }
     }
 
-    // The palette of the frame in which most parts meet.
-    static float[] Deepest(byte[] file, Palettes model)
+    // The palette of the frame with most faults.
+    static float[] Deepest(Model model, Palettes clip)
     {
-        using (Character character = new Character(file, model.Joints))
+        using (Body body = new Body(model))
         {
-            return model.Frames.Where((p, i) => i % 6 == 0).OrderByDescending(palette => character.FindPenetrations(palette, kColumns)).First();
+            return clip.Frames.Where((p, i) => i % 6 == 0).OrderByDescending(palette =>
+            {
+                body.SetPose(palette, kColumns);
+                return body.Penetrations().Count;
+            }).First();
         }
     }
 
-    static void AssetIsRead(byte[] file)
+    static T[] Listed<T>(Results<T> results) where T : struct { return results.Items.Take(results.Count).ToArray(); }
+
+    static void ModelIsRead(byte[] file)
     {
-        using (Asset asset = new Asset(file))
+        using (Model model = new Model(file))
         {
-            Check(asset.SphereCount > 50 && asset.BoneCount > 10 && asset.PartCount > 10 && asset.TriangleCount > 1000, "counts");
-            Check(asset.PartNames.Contains("left hand") && asset.PartNames.Contains("head"), "names of parts");
-            int hand = Array.IndexOf(asset.PartNames, "left hand");
-            Check(asset.PartSide(hand) == Side.Left && asset.PartBone(hand) >= 0, "the left hand");
-            Check(asset.PartNames[asset.PartParent(hand)] == "left forearm", "the hand hangs on the forearm");
-            Check(asset.RestSphere(3).Radius > 0 && asset.RestSphere(3).Region < 100, "a sphere at rest");
-            Check(asset.Writer.StartsWith("spherechain ") && asset.SourceSha256.Length == 64 && asset.Settings.StartsWith("{"), "texts");
-            Check(asset.Height > 0 && asset.MetresPerUnit > 0 && Math.Abs(asset.Up.Y) > 0.9f, "axes");
+            Check(model.SphereCount > 50 && model.BoneCount > 10 && model.PartCount > 10 && model.TriangleCount > 1000, "counts");
+            Check(model.PartNames.Contains("left hand") && model.PartNames.Contains("head"), "names of parts");
+            Check(model.RegionNames.Length == model.RegionCount && model.RegionNames[0].Length > 0, "names of regions");
+            int hand = Array.IndexOf(model.PartNames, "left hand");
+            Check(model.PartSide(hand) == Side.Left && model.PartBone(hand) >= 0, "the left hand");
+            Check(model.PartNames[model.PartParent(hand)] == "left forearm", "the hand hangs on the forearm");
+            Check(model.PartJoint((uint)hand) == model.PartBone(hand), "without joints they are the bones");
+            Check(model.PartName((uint)hand) == "left hand" && model.PartName(Native.Floor) == null, "a name");
+            Check(model.RestSphere(3).Radius > 0 && model.RestSphere(3).Region < 100, "a sphere at rest");
+            Triangle owner = Enumerable.Range(0, model.TriangleCount).Select(t => model.Triangle((uint)t)).First(t => t.Part == hand);
+            Check(model.RestSphere((int)owner.Sphere).Region == owner.Region, "a triangle's sphere and region");
+            Check(model.Triangle(uint.MaxValue).Part == Native.NoPart, "no triangle");
+            Check(model.Writer.StartsWith("spherechain ") && model.SourceSha256.Length == 64 && model.Settings.StartsWith("{"), "texts");
+            Check(model.Height > 0 && model.MetresPerUnit > 0 && Math.Abs(model.Up.Y) > 0.9f, "axes");
+            Check(Math.Abs(model.Millimetres(model.Height) - 1000 * model.Height * model.MetresPerUnit) < 0.01f, "millimetres");
             float[] bind = new float[12];
-            asset.InverseBind(asset.PartBone(hand), bind);
+            model.InverseBind(model.PartBone(hand), bind);
             Check(bind.Any(x => x != 0), "an inverse bind matrix");
-            Refused("part -1", Code.BadValue, "index", "-1 is none of", () => asset.PartBone(-1));
-            Refused("a short matrix", Code.TooSmall, "output", "12 floats", () => asset.InverseBind(0, bind, 1));
+            Refused("part -1", Code.BadValue, "index", "-1 is none of", () => model.PartBone(-1));
+            Refused("no part", Code.BadValue, "index", "is none of", () => model.PartSet(0, model.PartCount));
+            Refused("a short matrix", Code.TooSmall, "output", "12 floats", () => model.InverseBind(0, bind, 1));
         }
-        Asset closed = new Asset(file);
+        Model closed = new Model(file);
+        Body body = new Body(closed);
         closed.Dispose();
         closed.Dispose();
-        Refused("a disposed asset", Code.NotOpen, "asset", "disposed", () => closed.PartSide(0));
-        Refused("no file", Code.Null, "data", "null", () => new Asset((byte[])null));
-        Refused("garbage", Code.NotAnAsset, "data", "", () => new Asset(new byte[200]));
-        Refused("an empty file", Code.NotAnAsset, "data", "", () => new Asset(new byte[0]));
-        Refused("half a file", Code.Corrupt, "data", "", () => new Asset(file.Take(file.Length / 2).ToArray()));
+        Refused("a disposed model", Code.NotOpen, "asset", "disposed", () => closed.PartSide(0));
+        Refused("its body", Code.NotOpen, "asset", "disposed", () => body.SetPose(deepest, kColumns));
+        body.Dispose();
+        Refused("no file", Code.Null, "data", "null", () => new Model((byte[])null));
+        Refused("garbage", Code.NotAnAsset, "data", "", () => new Model(new byte[200]));
+        Refused("an empty file", Code.NotAnAsset, "data", "", () => new Model(new byte[0]));
+        Refused("half a file", Code.Corrupt, "data", "", () => new Model(file.Take(file.Length / 2).ToArray()));
     }
 
-    static void CharacterRefuses(byte[] file, Palettes model)
+    static void WrongArgumentsAreRefused(byte[] file, Palettes clip)
     {
-        string[] others = model.Joints.ToArray();
+        string[] others = clip.Joints.ToArray();
         int moved = Array.IndexOf(others, "left_elbow");
         others[moved] = "left_elbow_2";
-        Refused("another name", Code.NoSuchBone, "joints", "left_elbow", () => new Character(file, others, model.InverseBinds, kColumns));
-        float[] binds = model.InverseBinds.ToArray();
+        Refused("another name", Code.NoSuchBone, "joints", "left_elbow", () => new Model(file, others, clip.InverseBinds, kColumns));
+        others[moved] = null;
+        Refused("no name", Code.Null, "joints", "joint " + moved, () => new Model(file, others));
+        Refused("no joints", Code.NoSuchBone, "joints", "", () => new Model(file, new string[0]));
+        float[] binds = clip.InverseBinds.ToArray();
         binds[16 * moved + 12] += 100;
-        Refused("another rest pose", Code.OtherBind, "joints", "left_elbow", () => new Character(file, model.Joints, binds, kColumns));
-        Refused("few matrices", Code.TooSmall, "joints", "fewer", () => new Character(file, model.Joints, new float[16], kColumns));
-        Refused("no layout", Code.BadValue, "pose.bone_layout", "MatrixLayout", () => new Character(file, model.Joints, binds));
-        Refused("garbage", Code.NotAnAsset, "data", "", () => new Character(new byte[64]));
+        Refused("another rest pose", Code.OtherBind, "joints", "left_elbow", () => new Model(file, clip.Joints, binds, kColumns));
+        Refused("few matrices", Code.TooSmall, "joints", "fewer", () => new Model(file, clip.Joints, new float[16], kColumns));
+        Refused("no layout", Code.BadValue, "pose.bone_layout", "MatrixLayout", () => new Model(file, clip.Joints, binds));
 
-        Character character = new Character(file, model.Joints, model.InverseBinds, kColumns);
-        character.CheckRest(model.Rest, kColumns);
-        Refused("a pose as rest", Code.OtherBind, "pose.bones", "", () => character.CheckRest(deepest, kColumns));
-        Refused("no palette", Code.Null, "pose.bones", "null", () => character.FindPenetrations(null, kColumns));
-        Refused("a short palette", Code.TooSmall, "pose.bone_count", "small", () => character.FindContacts(new float[32], kColumns));
-        Refused("no layout", Code.BadValue, "pose.bone_layout", "", () => character.FindContacts(model.Rest, MatrixLayout.LayoutUnset));
-        character.FindContacts(deepest, kColumns);
-        Check(character.ContactCount > 0 && character.Contacts[0].TrianglePairs > 0, "contacts after refusals");
-        character.Dispose();
-        character.Dispose();
-        Refused("a disposed character", Code.NotOpen, "asset", "disposed", () => character.FindContacts(model.Rest, kColumns));
-        Refused("its asset", Code.NotOpen, "asset", "disposed", () => character.Asset.PartSide(0));
+        using (Model model = new Model(file, clip.Joints, clip.InverseBinds, kColumns))
+        {
+            model.CheckRest(clip.Rest, kColumns);
+            Refused("a pose as rest", Code.OtherBind, "pose.bones", "", () => model.CheckRest(deepest, kColumns));
+            Body body = new Body(model);
+            Refused("no pose", Code.NotOpen, "bodies", "SetPose", () => body.Contacts());
+            Refused("no palette", Code.Null, "pose.bones", "null", () => body.SetPose(null, kColumns));
+            Refused("a short palette", Code.TooSmall, "pose.bone_count", "small", () => body.SetPose(new float[32], kColumns));
+            Refused("no layout", Code.BadValue, "pose.bone_layout", "", () => body.SetPose(clip.Rest, MatrixLayout.LayoutUnset));
+            Refused("few vertices", Code.TooSmall, "pose.vertex_count", "fewer",
+                    () => body.SetPose(deepest, kColumns, vertices: new float[30]));
+            Refused("no rotation", Code.BadValue, "transform", "", () => body.SetPose(deepest, kColumns, new JointTransform()));
+            Refused("still no pose", Code.NotOpen, "bodies", "SetPose", () => body.Penetrations());
+            body.SetPose(deepest, kColumns);
+            Refused("no way up", Code.BadValue, "floor", "", () => body.Below(new Ground()));
+            Refused("itself", Code.BadValue, "bodies", "another", () => body.Contacts(body));
+            Refused("no other", Code.Null, "bodies", "null", () => body.Contacts(null));
+            Refused("few parts", Code.TooSmall, "ignored_parts", "PartSet", () => body.Contacts(new Query { IgnoredParts = new ulong[0] }));
+            Refused("another rule", Code.BadValue, "rule", "", () => body.Penetrations(new Query { Rule = new Rule() }));
+            Refused("steps unasked for", Code.TooSmall, "bodies", "findsSteps", () => { body.SetPose(deepest, kColumns); body.Steps(); });
+            Check(body.Contacts().Parts.Count > 0 && body.Contacts().Parts[0].TrianglePairs > 0, "contacts after refusals");
+            body.Dispose();
+            body.Dispose();
+            Refused("a disposed body", Code.NotOpen, "bodies", "disposed", () => body.Contacts());
+            using (Body other = new Body(model))
+            {
+                other.SetPose(deepest, kColumns);
+                Refused("as the other", Code.NotOpen, "bodies", "disposed", () => other.Contacts(body));
+            }
+        }
     }
 
-    // By rows, and in the asset's own order: the same answers.
-    static void LayoutsAgree(byte[] file, Palettes model)
+    // By rows, in the asset's own order, and as vertices: the same answers.
+    static void PosesAgree(byte[] file, Model model, Palettes clip)
     {
-        float[] palette = deepest;
-        using (Character character = new Character(file, model.Joints))
+        using (Model unbound = new Model(file))
+        using (Body body = new Body(model))
+        using (Body own = new Body(unbound))
         {
-            float[] rows = new float[palette.Length / 16 * 12];
-            for (int i = 0; i < rows.Length; ++i) rows[i] = palette[i / 12 * 16 + i % 4 * 4 + i % 12 / 4];
-            int count = character.FindPenetrations(palette, kColumns);
-            Penetration[] expected = character.Penetrations.Take(count).ToArray();
-            Check(count > 0 && character.FindPenetrations(rows, MatrixLayout.Rows3x4) == count, "rows count");
-            Check(expected.SequenceEqual(character.Penetrations.Take(count)), "rows: the same bits");
+            float[] rows = new float[deepest.Length / 16 * 12];
+            for (int i = 0; i < rows.Length; ++i) rows[i] = deepest[i / 12 * 16 + i % 4 * 4 + i % 12 / 4];
+            body.SetPose(deepest, kColumns);
+            Penetration[] expected = Listed(body.Penetrations(all));
+            Sphere[] spheres = Listed(body.SpherePairs().Spheres);
+            body.SetPose(rows, MatrixLayout.Rows3x4);
+            Check(expected.Length > 0 && expected.SequenceEqual(Listed(body.Penetrations(all))), "rows: the same bits");
 
-            string[] names = character.Asset.BoneNames;
-            using (Body body = new Body(character.Asset))
-            using (Body bound = new Body(character.Asset, model.Joints, model.InverseBinds, kColumns))
+            string[] names = model.BoneNames;
+            float[] ordered = new float[12 * names.Length];
+            for (int b = 0; b < names.Length; ++b)
             {
-                float[] ordered = new float[12 * names.Length];
-                for (int b = 0; b < names.Length; ++b)
+                int joint = Array.IndexOf(clip.Joints, names[b]);
+                for (int k = 0; k < 12; ++k) ordered[12 * b + k] = joint < 0 ? (k % 5 == 0 ? 1 : 0) : rows[12 * joint + k];
+            }
+            own.SetPose(ordered, MatrixLayout.Rows3x4);
+            Check(spheres.Length == model.SphereCount && spheres.SequenceEqual(Listed(own.SpherePairs().Spheres)), "the asset's order");
+            unsafe
+            {
+                fixed (float* first = ordered)
                 {
-                    int joint = Array.IndexOf(model.Joints, names[b]);
-                    for (int k = 0; k < 12; ++k) ordered[12 * b + k] = joint < 0 ? (k % 5 == 0 ? 1 : 0) : rows[12 * joint + k];
+                    Native.Pose pose = new Native.Pose { Bones = first, BoneLayout = MatrixLayout.Rows3x4, BoneStride = new UIntPtr(48) };
+                    pose.BoneCount = new UIntPtr((uint)names.Length);
+                    own.SetPose(pose);
+                    Check(spheres.SequenceEqual(Listed(own.SpherePairs().Spheres)), "from memory");
                 }
-                body.SetPalette(ordered, MatrixLayout.Rows3x4);
-                bound.SetPalette(palette, kColumns);
-                Check(body.Detect() == bound.Detect() && body.Spheres.SequenceEqual(bound.Spheres), "the asset's order");
-                Refused("few bones", Code.TooSmall, "pose.bone_count", "fewer", () => body.SetPalette(new float[12], MatrixLayout.Rows3x4));
-                Refused("no pose", Code.Null, "pose.bones", "SetPalette", () => body.Refit());
+            }
+            // Vertices are copied: what is done to the array later is not seen.
+            Vec3 low, high;
+            float[] vertices = new float[3 * model.VertexCount];
+            for (int frame = 0; frame < 3; ++frame)
+            {
+                for (int i = 0; i < vertices.Length; ++i) vertices[i] = i == 0 ? 5 + frame : 0;
+                own.SetPose(null, MatrixLayout.LayoutUnset, vertices: vertices);
+                vertices[0] = 100;
+                own.Bounds(out low, out high);
+                Check(low.X == 0 && (high.X == 5 + frame || high.X == 0), "a box around vertices: " + high.X);
             }
         }
     }
 
-    static void BodyAgrees(byte[] file, Palettes model)
+    static void QuestionsAreAnswered(Model model, Palettes clip)
     {
-        int pairs = 0;
-        using (Asset asset = new Asset(file))
-        using (Character character = new Character(file, model.Joints))
-        using (Body body = new Body(asset, model.Joints, model.InverseBinds, kColumns))
+        int pairs = 0, faults = 0;
+        bool hasVolume = false, isHidden = false;
+        using (Body body = new Body(model, findsSteps: true))
+        using (Body narrow = new Body(model, maxPenetrations: 1))
         {
-            foreach (float[] palette in model.Frames.Where((p, i) => i % 6 == 0))
+            Query full = new Query { Scope = Scope.All, Detail = Detail.Full, Classes = Query.AllClasses };
+            Filter nothing = new Filter(model);
+            for (int region = 0; region < model.RegionCount; ++region)
             {
-                character.FindContacts(palette, kColumns);
-                body.SetPalette(palette, kColumns);
-                pairs += body.Detect();
-                body.FindContacts(Scope.Apart);
-                Check(character.Contacts.Take(character.ContactCount).SequenceEqual(body.Contacts.Take(body.ContactCount)), "contacts");
-                character.FindPenetrations(palette, kColumns);
-                body.MeasurePenetrations(true);
-                Check(character.Penetrations.Take(character.PenetrationCount).SequenceEqual(
-                          body.Penetrations.Take(body.PenetrationCount)), "penetrations");
-                for (int i = 1; i < body.PairCount; ++i) Check(body.Pairs[i - 1].A <= body.Pairs[i].A, "pairs are sorted");
+                for (int other = 0; other <= region; ++other) nothing.IgnoreRegions(region, other, true);
             }
-            // In full, some frame has a volume that is known, and a line that is partly hidden.
-            bool hasVolume = false, isHidden = false;
-            for (int frame = 0; frame < model.Frames.Length; frame += 30)
+            Refused("no sphere", Code.BadValue, "index", "", () => nothing.IgnorePair(0, 100000, true));
+            Query limited = new Query { Limit = 1 }, filtered = new Query { Filter = nothing }, rigid = new Query { Rule = Native.sc_default_rule() };
+            for (int frame = 0; frame < clip.Frames.Length; frame += 9)
             {
-                body.SetPalette(model.Frames[frame], kColumns);
-                body.FindContacts(Scope.All);
-                body.MeasurePenetrations(false);
-                hasVolume |= body.Penetrations.Take(body.PenetrationCount).Any(p => p.Measures.Volume > 0);
-                isHidden |= body.Penetrations.Take(body.PenetrationCount).Any(p => p.Measures.Visible < 1);
+                body.SetPose(clip.Frames[frame], kColumns);
+                narrow.SetPose(clip.Frames[frame], kColumns);
+                SpherePairs spheres = body.SpherePairs();
+                pairs += spheres.Pairs.Count;
+                for (int i = 1; i < spheres.Pairs.Count; ++i) Check(spheres.Pairs[i - 1].A <= spheres.Pairs[i].A, "pairs are sorted");
+                Check(body.SpherePairs(filtered).Pairs.Count == 0 && body.Contacts(filtered).Parts.Count == 0, "all pairs are ignored");
+                Check(body.Contacts().Triangles.Count == 0, "quick: parts alone");
+                Contacts contacts = body.Contacts(new Query { Detail = Detail.Full });
+                Check(contacts.Triangles.Count == contacts.Parts.Items.Take(contacts.Parts.Count).Sum(c => c.TrianglePairs), "triangles");
+                foreach (PartContact contact in contacts) Check(contact.PartA <= contact.PartB && contact.TrianglePairs > 0, "parts");
+                Penetration[] found = Listed(body.Penetrations());
+                faults += found.Length;
+                Check(found.All(p => p.Kind >= PenetrationClass.DeepFold && p.Measures.Depth > 0), "faults alone");
+                Check(found.All(p => p.Joint == model.PartJoint(p.Part) && clip.Joints[p.Joint].Length > 0), "joints");
+                Check(found.SequenceEqual(Listed(body.Penetrations(rigid))), "the default rule");
+                Check(body.Penetrations(all).Count == contacts.Parts.Count, "a penetration for each two parts in contact");
+                Results<Penetration> worst = body.Penetrations(limited);
+                Check(worst.Total == found.Length && Listed(worst).SequenceEqual(found.Take(1)), "the worst one");
+                Check(Listed(narrow.Penetrations()).SequenceEqual(found.Take(1)), "the worst one that there is room for");
+                int listed = 0;
+                foreach (Penetration one in body.Penetrations()) Check(one.Equals(found[listed++]), "foreach");
+                Check(listed == found.Length, "foreach lists all");
+                if (frame % 45 > 0) continue;
+                found = Listed(body.Penetrations(full));
+                hasVolume |= found.Any(p => p.Measures.Volume > 0);
+                isHidden |= found.Any(p => p.Measures.Visible < 1);
             }
-            Check(hasVolume && isHidden, "volumes and visibility");
+            Check(pairs > 20 && faults > 5 && hasVolume && isHidden,
+                  string.Format("{0} pairs, {1} faults, volumes {2}, hidden {3}", pairs, faults, hasVolume, isHidden));
+
+            // Of the same pose the way out stays, whatever it was.
+            body.SetPose(deepest, kColumns);
+            Results<Penetration> kept = new Results<Penetration>();
+            kept.CopyFrom(body.Penetrations());
+            Check(Listed(kept).SequenceEqual(Listed(body.Penetrations(new Query { Previous = kept }))), "history");
+
+            body.SetPose(clip.Rest, kColumns);
+            body.SetPose(deepest, kColumns);
+            Results<StepContact> steps = body.Steps();
+            Check(steps.Count > 0 && Listed(steps).Any(c => c.AtStart == 0 && c.Begin > 0 && c.Begin < 1), "steps");
+
             // The ground at the height of the knees.
-            Vec3 up = asset.Up;
-            int below = body.FindFloor(up, asset.Origin.Y + 0.25f * asset.Height);
-            Check(below > 0 && below < asset.PartCount && body.Penetrations[0].Other == Native.Floor, "the ground: " + below);
-            Check(body.Penetrations.Take(below).Any(p => asset.PartNames[p.Part].Contains("foot")), "feet are below");
-            Refused("no way up", Code.BadValue, "floor", "", () => body.FindFloor(new Vec3(), 0));
+            Ground ground = new Ground { Up = model.Up, Height = model.Origin.Y + 0.25f * model.Height };
+            Penetration[] below = Listed(body.Below(ground, all));
+            Check(below.Length > 0 && below.Length < model.PartCount && below[0].Other == Native.Floor, "the ground: " + below.Length);
+            Check(below.Any(p => model.PartName(p.Part).Contains("foot")), "feet are below");
         }
-        Check(pairs > 20, "pairs of spheres");
     }
 
-    static void TwoBodiesMeet(byte[] file, Palettes model)
+    static JointTransform Beside(Model model, float heights)
     {
-        using (Asset asset = new Asset(file))
-        using (Body a = new Body(asset, model.Joints))
-        using (Body b = new Body(asset, model.Joints))
-        using (BodyPair pair = new BodyPair(a, b))
-        using (BodyPair back = new BodyPair(b, a))
+        JointTransform place = new JointTransform { Rotation3 = 1 };
+        place.Scale.X = place.Scale.Y = place.Scale.Z = 1;
+        place.Translation.X = heights * model.Height;
+        return place;
+    }
+
+    static void TwoBodiesMeet(Model model)
+    {
+        using (Body a = new Body(model, model, true))
+        using (Body b = new Body(model))
         {
-            Refused("no pose", Code.Null, "pose.bones", "SetPalette", () => pair.FindContacts());
-            JointTransform place = new JointTransform { Rotation3 = 1 };
-            place.Scale.X = place.Scale.Y = place.Scale.Z = 1;
+            a.SetPose(deepest, kColumns);
+            Refused("no pose", Code.NotOpen, "bodies", "SetPose", () => a.Contacts(b));
+            Query full = new Query { Detail = Detail.Full };
             foreach (float distance in new[] { 0.1f, 10 })
             {
-                a.SetPalette(deepest, kColumns);
-                b.SetPalette(deepest, kColumns);
-                place.Translation.X = distance * asset.Height;
-                b.Place(place);
-                int count = pair.FindContacts();
-                Check(count > 0 == distance < 1, "contacts at " + distance);
-                Check(back.FindContacts() == count && back.TriangleCount == pair.TriangleCount, "contacts the other way round");
-                Check(pair.MeasurePenetrations(true) == count, "measures at " + distance);
-                for (int i = 0; i < pair.PenetrationCount; ++i) Check(pair.Penetrations[i].Measures.Depth > 0, "a depth");
+                b.SetPose(deepest, kColumns, Beside(model, distance));
+                Contacts contacts = a.Contacts(b, full);
+                int parts = contacts.Parts.Count, triangles = contacts.Triangles.Count;
+                Check(parts > 0 == distance < 1, "contacts at " + distance);
+                contacts = b.Contacts(a, full);
+                Check(contacts.Parts.Count == parts && contacts.Triangles.Count == triangles, "contacts the other way round");
+                Check(a.Penetrations(b, all).Count == Math.Min(parts, 128), "measures at " + distance);
+                Check(Listed(a.Penetrations(b, all)).All(p => p.Measures.Depth > 0), "a depth");
             }
-            a.SetPalette(deepest, kColumns);
-            b.SetPalette(deepest, kColumns);
-            place.Translation.X = 0.1f * asset.Height;
-            b.Place(place);
-            for (int part = 0; part < asset.PartCount; ++part) a.IgnorePart(part, true);
-            Check(pair.FindContacts() == 0, "ignored parts meet nothing");
-            Refused("a body with itself", Code.BadValue, "bodies", "another", () => new BodyPair(a, a));
-            Refused("no part", Code.BadValue, "index", "no part", () => a.IgnorePart(asset.PartCount, true));
-            place.Rotation3 = 0;
-            Refused("no rotation", Code.BadValue, "transform", "", () => b.Place(place));
+            a.SetPose(deepest, kColumns);
+            b.SetPose(deepest, kColumns, Beside(model, 0.1f));
+            Check(a.Steps(b).Count > 0, "on the way");
+            ulong[] parts_of_a = model.PartSet(Enumerable.Range(0, model.PartCount).ToArray());
+            Check(a.Contacts(b, new Query { IgnoredParts = parts_of_a }).Parts.Count == 0, "ignored parts meet nothing");
+            Check(b.Contacts(a, new Query { IgnoredPartsOfOther = parts_of_a }).Parts.Count == 0, "nor the other way round");
+            Check(a.Penetrations(b).Count > 0 && a.Penetrations().Count > 0 && a.Penetrations(b) != a.Penetrations(),
+                  "lists of their own: " + a.Penetrations(b).Count + ", " + a.Penetrations().Count);
         }
     }
 
-    static void FramesAllocateNothing(byte[] file, Palettes model)
+    static void FramesAllocateNothing(Model model, Palettes clip)
     {
-        using (Asset asset = new Asset(file))
-        using (Character character = new Character(file, model.Joints))
-        using (Body body = new Body(asset, model.Joints))
-        using (Body other = new Body(asset, model.Joints))
-        using (BodyPair pair = new BodyPair(body, other))
+        using (Body body = new Body(model, findsSteps: true))
+        using (Body other = new Body(model))
         {
-            JointTransform beside = new JointTransform { Rotation3 = 1 };
-            beside.Scale.X = beside.Scale.Y = beside.Scale.Z = 1;
-            beside.Translation.X = 0.3f * asset.Height;
+            JointTransform beside = Beside(model, 0.3f);
+            Query query = new Query { Detail = Detail.Full, IgnoredParts = model.PartSet(0), Filter = new Filter(model) };
+            Ground ground = new Ground { Up = model.Up, Height = model.Origin.Y };
+            other.SetPose(clip.Frames[0], kColumns);
+            body.SetPose(clip.Frames[0], kColumns);
             long before = 0;
             for (int round = 0; round < 2; ++round)  // the first makes lists as large as they get, and compiles
             {
                 before = GC.GetAllocatedBytesForCurrentThread();
-                for (int frame = 0; frame < model.Frames.Length; frame += 18)
+                for (int frame = 0; frame < clip.Frames.Length; frame += 18)
                 {
-                    character.FindPenetrations(model.Frames[frame], kColumns);
-                    character.FindContacts(model.Frames[frame], kColumns);
-                    body.SetPalette(model.Frames[frame], kColumns);
-                    body.Detect();
-                    body.FindContacts(Scope.Apart);
-                    body.MeasurePenetrations(true);
-                    other.SetPalette(model.Frames[0], kColumns);
-                    other.Place(beside);
-                    pair.FindContacts();
+                    body.SetPose(clip.Frames[frame], kColumns);
+                    other.SetPose(clip.Frames[frame], kColumns, beside);
+                    query.Previous = body.Penetrations(query);
+                    float sum = 0;
+                    foreach (Penetration found in query.Previous) sum += found.Distance;
+                    body.Penetrations(other);
+                    body.Contacts(query);
+                    body.Contacts(other);
+                    body.SpherePairs();
+                    body.Below(ground);
+                    if (frame == 36) body.Steps(other);
                 }
             }
             long allocated = GC.GetAllocatedBytesForCurrentThread() - before;
@@ -242,10 +324,12 @@ public static class ApiTest
         }
     }
 
-    static void ThreadsShareAnAsset(byte[] file, Palettes model)
+    // Each with a body of its own, and one that both meet.
+    static void ThreadsShareAModel(Model model, Palettes clip)
     {
-        using (Asset asset = new Asset(file))
+        using (Body met = new Body(model))
         {
+            met.SetPose(deepest, kColumns, Beside(model, 0.2f));
             int[][] counts = new int[2][];
             Thread[] threads = new Thread[2];
             for (int t = 0; t < threads.Length; ++t)
@@ -253,13 +337,12 @@ public static class ApiTest
                 int own = t;
                 threads[t] = new Thread(() =>
                 {
-                    using (Body body = new Body(asset, model.Joints))
+                    using (Body body = new Body(model))
                     {
-                        counts[own] = model.Frames.Skip(60).Take(20).Select(palette =>
+                        counts[own] = clip.Frames.Skip(60).Take(20).Select(palette =>
                         {
-                            body.SetPalette(palette, kColumns);
-                            body.FindContacts(Scope.Apart);
-                            return body.Detect() + 1000 * body.ContactCount + 10000 * body.TriangleCount;
+                            body.SetPose(palette, kColumns);
+                            return body.SpherePairs().Pairs.Count + 1000 * body.Contacts().Parts.Count + 10000 * body.Contacts(met).Parts.Count;
                         }).ToArray();
                     }
                 });
@@ -270,46 +353,59 @@ public static class ApiTest
         }
     }
 
-    // One character on two threads: each call either does its work or is refused, and both are seen.
-    static void ACharacterIsOneThreads(byte[] file, Palettes model)
+    // Two threads do the same: each call either does its work or is refused, and both are seen.
+    static void Compete(string what, Action first, Action second)
     {
-        using (Character character = new Character(file, model.Joints))
+        int refused = 0, done = 0;
+        DateTime end = DateTime.UtcNow.AddSeconds(2);
+        Action<Action> work = action =>
         {
-            int refused = 0, done = 0;
-            DateTime end = DateTime.UtcNow.AddSeconds(2);
-            ThreadStart work = () =>
+            while (Volatile.Read(ref refused) == 0 && DateTime.UtcNow < end)
             {
-                while (Volatile.Read(ref refused) == 0 && DateTime.UtcNow < end)
+                try
                 {
-                    try
-                    {
-                        character.FindContacts(deepest, kColumns);
-                        Interlocked.Increment(ref done);
-                    }
-                    catch (SpherechainException error)
-                    {
-                        Check(error.Code == Code.Aliased && error.Message.Contains("one a thread"), error.Message);
-                        Interlocked.Increment(ref refused);
-                    }
+                    action();
+                    Interlocked.Increment(ref done);
                 }
-            };
-            Thread other = new Thread(work);
-            other.Start();
-            work();
-            other.Join();
-            Check(refused > 0 && done > 0, "refused " + refused + ", done " + done);
+                catch (SpherechainException error)
+                {
+                    Check(error.Code == Code.Aliased && error.Message.Contains("one a thread"), error.Message);
+                    Interlocked.Increment(ref refused);
+                }
+            }
+        };
+        Thread other = new Thread(() => work(second));
+        other.Start();
+        work(first);
+        other.Join();
+        Check(refused > 0 && done > 0, what + ": refused " + refused + ", done " + done);
+    }
+
+    static void ABodyIsOneThreads(Model model)
+    {
+        using (Body body = new Body(model))
+        using (Body other = new Body(model))
+        {
+            body.SetPose(deepest, kColumns);
+            other.SetPose(deepest, kColumns);
+            Compete("questions", () => body.Contacts(), () => body.Contacts());
+            Compete("a new pose of the other", () => body.Contacts(other), () => other.SetPose(deepest, kColumns));
+            Check(body.Contacts(other).Parts.Count > 0, "all is unlocked");
+            other.SetPose(deepest, kColumns);
         }
     }
 
     // Dropped without Dispose(): the collector frees them, and not before.
-    static void DroppedObjectsAreFreed(byte[] file, Palettes model)
+    static void DroppedObjectsAreFreed(byte[] file, Palettes clip)
     {
         for (int i = 0; i < 10; ++i)
         {
-            Asset asset = new Character(file, model.Joints).Asset;  // the asset keeps its character
+            Body body = new Body(new Model(file, clip.Joints));  // the body keeps its model
+            body.SetPose(null, MatrixLayout.LayoutUnset, vertices: new float[3 * body.Model.VertexCount]);
             GC.Collect();
             GC.WaitForPendingFinalizers();
-            Check(asset.PartSide(0) <= Side.Right && asset.RestSphere(0).Radius > 0, "an asset outlives its character's name");
+            body.SetPose(deepest, kColumns);
+            Check(body.Contacts().Parts.Count > 0, "a model outlives its name");
         }
     }
 
@@ -331,17 +427,20 @@ public static class ApiTest
     public static int Main(string[] arguments)
     {
         byte[] file = File.ReadAllBytes(arguments[0]);
-        Palettes model = new Palettes(arguments[1]);
-        deepest = Deepest(file, model);
-        AssetIsRead(file);
-        CharacterRefuses(file, model);
-        LayoutsAgree(file, model);
-        BodyAgrees(file, model);
-        TwoBodiesMeet(file, model);
-        FramesAllocateNothing(file, model);
-        ThreadsShareAnAsset(file, model);
-        ACharacterIsOneThreads(file, model);
-        DroppedObjectsAreFreed(file, model);
+        Palettes clip = new Palettes(arguments[1]);
+        using (Model model = new Model(file, clip.Joints, clip.InverseBinds, kColumns))
+        {
+            deepest = Deepest(model, clip);
+            ModelIsRead(file);
+            WrongArgumentsAreRefused(file, clip);
+            PosesAgree(file, model, clip);
+            QuestionsAreAnswered(model, clip);
+            TwoBodiesMeet(model);
+            FramesAllocateNothing(model, clip);
+            ThreadsShareAModel(model, clip);
+            ABodyIsOneThreads(model);
+        }
+        DroppedObjectsAreFreed(file, clip);
         MirrorsAreTheirOwnInverse();
         Console.WriteLine("{0} checks, {1} failures", checks, failures);
         return failures == 0 ? 0 : 1;

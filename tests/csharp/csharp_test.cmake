@@ -110,7 +110,7 @@ elseif(CASE STREQUAL drift)
     endif()
   endforeach()
   # What generate.py does not know is an error.
-  file(APPEND ${headers}/spherechain/steps.h "\nunion sc_unknown { int a; };\n")
+  file(APPEND ${headers}/spherechain/body.h "\nunion sc_unknown { int a; };\n")
   execute_process(COMMAND ${PYTHON} ${ROOT}/runtime/csharp/generate.py ${headers} RESULT_VARIABLE result ERROR_VARIABLE error OUTPUT_QUIET)
   if(result EQUAL 0 OR NOT error MATCHES "what is this")
     message(FATAL_ERROR "generate.py passes over a union: ${error}")

@@ -40,7 +40,7 @@ const sphere = async (page, id) => (await edits(page)).spheres.find((one) => one
 test('spheres are moved, resized, added and deleted, parts ignored; undone and redone; and a bake applies what was saved', async () => {
   const inspect = JSON.parse(run('inspect', file('human.sphc'), '--json'));
   const mm = 1e-3 / inspect.source.metres_per_unit;
-  const opened = await open(browser, file('rest.html'));
+  const opened = await open(browser, file('rest.html'), { width: 1280, height: 560 }); // small: drawing by software takes most of the time
   const { page } = opened;
   await page.keyboard.press('e');
   assert.ok(await page.locator('#edit').isVisible());

@@ -36,13 +36,14 @@ typedef struct sc_query {
   sc_scope scope SC_ZERO;
   sc_detail detail SC_ZERO;
   const sc_filter* filter SC_ZERO;       /* of a body with itself, by spheres and regions; null: the asset's ignored pairs */
-  const uint64_t* ignored_parts SC_ZERO; /* sc_part_words() words: bit p: body part p meets nothing; null: all meet */
+  /* With another body, and in the ground: sc_part_words() words; bit p: body part p meets nothing; null: all meet. */
+  const uint64_t* ignored_parts SC_ZERO;
   const uint64_t* ignored_parts_of_other SC_ZERO;
   const sc_rule* rule SC_ZERO;           /* null: sc_default_rule() */
   uint32_t classes SC_ZERO;              /* bit k: penetrations of class k are listed; 0: faults alone */
   size_t limit SC_ZERO;                  /* the worst so many; 0: as many as there is room for */
-  /* The body's last penetrations of the same question: directions of faults then stay steady (sc_penetration.distance).
-   * A list of this body stays valid for that long. */
+  /* The last penetrations of the same question: directions of faults then stay steady (sc_penetration.distance). The
+   * body's last list is valid for that long; who asks several questions in turn keeps a copy of each list. */
   const sc_penetration* previous SC_ZERO;
   size_t previous_count SC_ZERO;
   float tolerance SC_ZERO;               /* of steps, a share of the height; 0: 0.0001 */
@@ -106,9 +107,10 @@ SPHERECHAIN_API void sc_destroy_body(sc_body* body) SC_NOEXCEPT; /* null is fine
 SPHERECHAIN_API sc_status sc_set_pose(sc_body* body, const sc_pose* pose, const sc_transform* place) SC_NOEXCEPT;
 
 /* The questions. `other` null: the body with itself; else another body, which may be of the same model. Parts of `body`
- * come first. `query` null: all zeros. SC_OK; SC_NULL, SC_BAD_VALUE, SC_NOT_IN_ASSET, SC_UNSUPPORTED_TARGET, SC_TOO_SMALL
- * with SC_FIELD_BODIES (the other's model is larger than the body was made for; of steps: it was not made for them), SC_NOT_OPEN
- * with SC_FIELD_BODIES (a body has no pose; of steps: no pose before): the result is empty then. */
+ * come first. `query` null: all zeros. SC_OK; SC_NULL, SC_BAD_VALUE, SC_NOT_IN_ASSET, SC_UNSUPPORTED_TARGET; with
+ * SC_FIELD_BODIES: SC_ALIASED (`other` is the body), SC_TOO_SMALL (the other's model is larger than the body was made for;
+ * of steps: it was not made for them), SC_NOT_OPEN (a body has no pose; of steps: no pose before). After an error the
+ * result is empty. */
 SPHERECHAIN_API sc_status sc_find_penetrations(sc_body* body, const sc_body* other, const sc_query* query,
                                                sc_penetrations* found) SC_NOEXCEPT;
 SPHERECHAIN_API sc_status sc_find_contacts(sc_body* body, const sc_body* other, const sc_query* query,
@@ -178,48 +180,42 @@ class Body {
     return status_ = sc_set_pose(handle_, &pose, &place);
   }
   Penetrations penetrations(const Query& query = {}) noexcept {
-    Penetrations out{};
-    status_ = sc_find_penetrations(handle_, nullptr, &query, &out);
-    return out;
+    return ask<Penetrations>(sc_find_penetrations, nullptr, query);
   }
   Penetrations penetrations(const Body& other, const Query& query = {}) noexcept {
-    Penetrations out{};
-    status_ = sc_find_penetrations(handle_, other.handle_, &query, &out);
-    return out;
+    return ask<Penetrations>(sc_find_penetrations, &other, query);
   }
   Penetrations below(const Ground& ground, const Query& query = {}) noexcept {
     Penetrations out{};
     status_ = sc_find_in_ground(handle_, &ground, &query, &out);
     return out;
   }
-  Contacts contacts(const Query& query = {}) noexcept {
-    Contacts out{};
-    status_ = sc_find_contacts(handle_, nullptr, &query, &out);
-    return out;
-  }
+  Contacts contacts(const Query& query = {}) noexcept { return ask<Contacts>(sc_find_contacts, nullptr, query); }
   Contacts contacts(const Body& other, const Query& query = {}) noexcept {
-    Contacts out{};
-    status_ = sc_find_contacts(handle_, other.handle_, &query, &out);
-    return out;
+    return ask<Contacts>(sc_find_contacts, &other, query);
   }
   SpherePairs sphere_pairs(const Query& query = {}) noexcept {
     SpherePairs out{};
     status_ = sc_find_sphere_pairs(handle_, &query, &out);
     return out;
   }
-  Steps steps(const Query& query = {}) noexcept {
-    Steps out{};
-    status_ = sc_find_steps(handle_, nullptr, &query, &out);
-    return out;
-  }
+  Steps steps(const Query& query = {}) noexcept { return ask<Steps>(sc_find_steps, nullptr, query); }
   Steps steps(const Body& other, const Query& query = {}) noexcept {
-    Steps out{};
-    status_ = sc_find_steps(handle_, other.handle_, &query, &out);
-    return out;
+    return ask<Steps>(sc_find_steps, &other, query);
   }
   Status bounds(Vec3& low, Vec3& high) noexcept { return status_ = sc_get_bounds(handle_, &low, &high); }
 
  private:
+  /* `other` null: the body with itself. A body that was not made is refused. */
+  template <typename Found, typename Question>
+  Found ask(Question question, const Body* other, const Query& query) noexcept {
+    Found out{};
+    status_ = other != nullptr && !*other
+                  ? Status{SC_NULL, SC_FIELD_BODIES}
+                  : question(handle_, other == nullptr ? nullptr : other->handle_, &query, &out);
+    return out;
+  }
+
   sc_body* handle_ = nullptr;
   Status status_{};
 };

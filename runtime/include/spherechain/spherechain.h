@@ -5,7 +5,6 @@
 #include "spherechain/asset.h"
 #include "spherechain/bodies.h"
 #include "spherechain/body.h"
-#include "spherechain/character.h"
 #include "spherechain/contacts.h"
 #include "spherechain/crowd.h"
 #include "spherechain/detect.h"

@@ -126,6 +126,9 @@ Status check(const sc_body* body, const sc_body* other, const void* found) {
   if (body == nullptr || found == nullptr) {
     return refuse(SC_NULL, body == nullptr ? SC_FIELD_BODIES : SC_FIELD_OUTPUT);
   }
+  if (other == body) {
+    return refuse(SC_ALIASED, SC_FIELD_BODIES);
+  }
   return !body->now.is_given || (other != nullptr && !other->now.is_given) ? refuse(SC_NOT_OPEN, SC_FIELD_BODIES)
                                                                            : done();
 }

@@ -140,7 +140,7 @@ TEST_CASE("a body without a rig has the parts of the automatic rig, each where p
   CHECK(bake.bones.bones[static_cast<std::size_t>(part_called(parts, "left hand").bone)].name == "left_wrist");
 }
 
-TEST_CASE("the parts of a body stay where only later settings differ") {
+TEST_CASE("the parts of a body stay where only later settings differ" * doctest::test_suite("long runs")) {
   const Bake again = rebake(baked_human(), baked_human().settings);
   CHECK(part_names(again.body_parts) == kHumanParts);
   CHECK(again.body_parts.of_triangle == baked_human().body_parts.of_triangle);

@@ -93,7 +93,8 @@ TEST_CASE("calibration changes no radius of limbs and torso, and lists few pairs
   }
 }
 
-TEST_CASE("two bakes give the same bytes, and profile paper keeps nine tenths for all rest pairs") {
+TEST_CASE("two bakes give the same bytes, and profile paper keeps nine tenths for all rest pairs" *
+          doctest::test_suite("long runs")) {
   const Bake& bake = baked_human();
   CHECK(rebake(bake, bake.settings).asset == bake.asset);
   const Bake& paper = paper_baked_human();

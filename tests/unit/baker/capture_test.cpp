@@ -197,7 +197,8 @@ const std::vector<Frame>& boxing() {
 
 }  // namespace
 
-TEST_CASE("where a capture rests, our limbs are parallel to its own and the trunk stays as it is") {
+TEST_CASE("where a capture rests, our limbs are parallel to its own and the trunk stays as it is" *
+          doctest::test_suite("long runs")) {
   const std::vector<Affine> bones = posed({{{0, 1, 0}, {}}}, 0);
   for (const char* name : {"left_shoulder", "left_elbow", "left_wrist"})
     CHECK(degrees_between(bone(bones, name), Vec3(1, 0, 0)) < kSingles);
@@ -253,7 +254,7 @@ TEST_CASE("left is left: a capture mirrored is played mirrored") {
   }
 }
 
-TEST_CASE("units, axes, heading and names of a capture change nothing") {
+TEST_CASE("units, axes, heading and names of a capture change nothing" * doctest::test_suite("long runs")) {
   Eigen::Matrix3d z_up, sideways;
   z_up << 1, 0, 0, 0, 0, -1, 0, 1, 0;
   sideways << 0, 0, 1, 0, 1, 0, -1, 0, 0;

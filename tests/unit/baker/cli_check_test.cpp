@@ -126,7 +126,7 @@ TEST_CASE("check reports planted faults: parts, frames and depth") {
   CHECK(fs::exists(library.folder.path / "report/library.js"));
 }
 
-TEST_CASE("check fails by its rules and its baseline alone") {
+TEST_CASE("check fails by its rules and its baseline alone" * doctest::test_suite("long runs")) {
   PlantedLibrary library;
   const std::string baseline = " --baseline " + library.path("baseline.json"),
                     json_file = " --json " + library.path("all.json");
@@ -180,7 +180,8 @@ TEST_CASE("check fails by its rules and its baseline alone") {
   CHECK(sarif[0]["level"] == "error");
 }
 
-TEST_CASE("--accept drops an entry of a baseline only if its fault was looked for and is gone, and keeps its keys") {
+TEST_CASE("--accept drops an entry of a baseline only if its fault was looked for and is gone, and keeps its keys" *
+          doctest::test_suite("long runs")) {
   using nlohmann::ordered_json;
   PlantedLibrary library;
   const std::string file = library.path("baseline.json"), accept = " --accept --baseline " + file;
@@ -273,7 +274,8 @@ TEST_CASE("what is wrong with a baseline, rules or a manifest is told by file, e
            "'characters', entry 1: 'config': 'leave_out' is not a list");
 }
 
-TEST_CASE("check and play say which joint a scale of 0 hides, and in how many frames") {
+TEST_CASE("check and play say which joint a scale of 0 hides, and in how many frames" *
+          doctest::test_suite("long runs")) {
   const std::vector<PlantedClip> hidden{{"gone", {200, 200, -50, -50, -50}, false, {}, {0, 0, 1, 1, 1}},
                                         {"small", {-50, -50}, false, {}, {1, 0.01}}};
   const PlantedLibrary library(hidden);
@@ -287,7 +289,7 @@ TEST_CASE("check and play say which joint a scale of 0 hides, and in how many fr
   CHECK(play.error.find("small") == std::string::npos);
 }
 
-TEST_CASE("check and play say which clip is over before its second frame") {
+TEST_CASE("check and play say which clip is over before its second frame" * doctest::test_suite("long runs")) {
   const PlantedLibrary library(
       {{"brief", {-50, 90, 90}, false, {}, {}, 1e-3F}, {"pose", {-50, -50}, false, {}, {}, 1e-3F}});
   const std::string asset = library.path("hero.sphc"), note = "brief: lasts 6.7e-05 s, so one of its 3 keys is looked";
@@ -298,7 +300,8 @@ TEST_CASE("check and play say which clip is over before its second frame") {
   CHECK(play.error.find("pose") == std::string::npos);
 }
 
-TEST_CASE("check, play and fix name two parts in one order, and play the way of the first") {
+TEST_CASE("check, play and fix name two parts in one order, and play the way of the first" *
+          doctest::test_suite("long runs")) {
   const PlantedLibrary library({kClips[1]});
   const std::string asset = library.path("hero.sphc");
   CHECK(library.check("").out.find("ball in wall") != std::string::npos);
@@ -438,7 +441,7 @@ TEST_CASE("one bad file stops nothing") {
                     {"holds other files than a check report"});
 }
 
-TEST_CASE("faults that are accepted stay so, whatever bytes a name holds") {
+TEST_CASE("faults that are accepted stay so, whatever bytes a name holds" * doctest::test_suite("long runs")) {
   const PlantedLibrary library;
   const fs::path folder = library.folder.path / "lib";
   fs::create_directory(folder);
@@ -476,7 +479,8 @@ TEST_CASE("a file that changes while it is read is not called broken") {
   CHECK_THROWS_WITH(baker::do_unchanged(file, hash, fail), (file.string() + ": no such file").c_str());
 }
 
-TEST_CASE("results that somebody deletes while check runs are lost, and no character is called broken") {
+TEST_CASE("results that somebody deletes while check runs are lost, and no character is called broken" *
+          doctest::test_suite("long runs")) {
   const PlantedLibrary library({{"dip", {-10, 80, -10}}});
   baker::RunOptions options;
   const auto read = baker::read_library({library.file.string()}, "", baker::default_config()).characters;
@@ -607,7 +611,7 @@ TEST_CASE("check --continuous finds what passes through between two frames, and 
   }
 }
 
-TEST_CASE("check --continuous follows the clip's keys between two frames") {
+TEST_CASE("check --continuous follows the clip's keys between two frames" * doctest::test_suite("long runs")) {
   const PlantedLibrary library(kDetour);
   REQUIRE(library.check("--fps 15 --json " + library.path("frames.json")).code == 0);
   const tool::Run run = library.check("--fps 15 --continuous --json " + library.path("between.json"));

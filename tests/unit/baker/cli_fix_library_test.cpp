@@ -59,7 +59,8 @@ TEST_CASE("check --fix mends the characters with faults, and says what kept it f
   CHECK(library.check("").code == 6);  // over its own files
 }
 
-TEST_CASE("check --fix leaves what rules and baseline accept, and mends recordings as new clips") {
+TEST_CASE("check --fix leaves what rules and baseline accept, and mends recordings as new clips" *
+          doctest::test_suite("long runs")) {
   const FixedLibrary library;
   const std::string baseline = " --baseline " + (library.folder.path / "baseline.json").string();
   CHECK(library.check(baseline + " --accept").code == 0);

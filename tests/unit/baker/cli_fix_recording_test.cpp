@@ -96,7 +96,8 @@ TEST_CASE("fix: a BVH recording is written again with other angles around the fa
   CHECK(tool::contents(files.path("again.bvh")) == after);
 }
 
-TEST_CASE("fix: a recording that names a wrong number of frames, or none, is written with the right one") {
+TEST_CASE("fix: a recording that names a wrong number of frames, or none, is written with the right one" *
+          doctest::test_suite("long runs")) {
   const Files files;
   const std::string right = tool::contents(files.take), stated = "Frames: 120\n";
   const std::size_t at = right.find(stated);
@@ -141,7 +142,7 @@ TEST_CASE("fix: what cannot be written from a recording is refused, and nothing 
                     3, {"take 1.bvh: ends before its motion"});
 }
 
-TEST_CASE("fix: what a baseline accepts is left; what is worse than that is not") {
+TEST_CASE("fix: what a baseline accepts is left; what is worse than that is not" * doctest::test_suite("long runs")) {
   const TemporaryFolder folder;
   const auto file = folder.write("arm.glb", wall_and_arm(std::vector<double>(30, 5)));
   const std::string baseline = (folder.path / "baseline.json").string(), out = (folder.path / "out.glb").string();
@@ -167,7 +168,7 @@ TEST_CASE("fix: what a baseline accepts is left; what is worse than that is not"
                     {"arm.glb", "no baseline"});
 }
 
-TEST_CASE("fix: only faults of the parts that are asked for are mended") {
+TEST_CASE("fix: only faults of the parts that are asked for are mended" * doctest::test_suite("long runs")) {
   const TemporaryFolder folder;
   const auto file = folder.write("arm.glb", wall_and_arm(std::vector<double>(30, 5)));
   const std::string out = (folder.path / "out.glb").string(), start = "fix " + file.string() + " -o " + out;

@@ -91,7 +91,7 @@ TEST_CASE("fix: a fault in a clean clip is undone around it, and nothing else of
   CHECK(json_after["animations"][0]["channels"][1] == json_before["animations"][0]["channels"][1]);
 }
 
-TEST_CASE("fix: a loop stays one") {
+TEST_CASE("fix: a loop stays one" * doctest::test_suite("long runs")) {
   std::vector<double> degrees(60, -10);
   for (int f = 52; f <= 58; ++f) degrees[static_cast<std::size_t>(f)] = 12;  // near its seam, on one side
   const Fixed fixed = fix(degrees);
@@ -99,7 +99,8 @@ TEST_CASE("fix: a loop stays one") {
   CHECK(std::abs(fixed.degrees.front() - fixed.degrees.back()) < 0.1);
 }
 
-TEST_CASE("fix: what has no fault, is meant, or costs more than the budget, stays byte for byte") {
+TEST_CASE("fix: what has no fault, is meant, or costs more than the budget, stays byte for byte" *
+          doctest::test_suite("long runs")) {
   const Fixed clean = fix(std::vector<double>(30, -10));
   CHECK(clean.run.code == 0);
   CHECK(clean.after == clean.before);
@@ -159,7 +160,7 @@ TEST_CASE("fix: a report folder is written again; what cannot be written is refu
   CHECK(!std::filesystem::exists(folder.path / "out.glb"));
 }
 
-TEST_CASE("fix: a file of another format is mended as a binary glTF") {
+TEST_CASE("fix: a file of another format is mended as a binary glTF" * doctest::test_suite("long runs")) {
   const TemporaryFolder folder;
   const std::string source = "/usr/share/assimp/models/FBX/huesitos.fbx", out = (folder.path / "out.glb").string();
   const auto penetrations = [&](const std::string& file, const char* name) {
@@ -173,7 +174,7 @@ TEST_CASE("fix: a file of another format is mended as a binary glTF") {
   CHECK(import_character(out).source_positions == import_character(source).source_positions);
 }
 
-TEST_CASE("fix: clips of one name have a page each") {
+TEST_CASE("fix: clips of one name have a page each" * doctest::test_suite("long runs")) {
   const TemporaryFolder folder;
   const std::string report = (folder.path / "report").string();
   tool::run("fix '/usr/share/assimp/models/MDL/MDL (HL1)/man.mdl' -o " + (folder.path / "out.glb").string() +

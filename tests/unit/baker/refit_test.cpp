@@ -55,7 +55,8 @@ Errors refit_errors(const Bake& bake) {
 
 }  // namespace
 
-TEST_CASE("refit by moments follows the best-fit sphere of the deformed skin over both animations") {
+TEST_CASE("refit by moments follows the best-fit sphere of the deformed skin over both animations" *
+          doctest::test_suite("long runs")) {
   REQUIRE(animation_frames().size() == 80);
   const Errors moments = refit_errors(baked_human()), paper = refit_errors(paper_baked_human());
   const std::string header = fmt::format(

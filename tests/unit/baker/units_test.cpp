@@ -7,6 +7,7 @@
 
 #include "calibrate/random_poses.h"
 #include "gltf_reference.h"
+#include "import/notes.h"
 #include "import/source_rig.h"
 #include "motion/motion.h"
 #include "report/report.h"
@@ -151,12 +152,17 @@ TEST_CASE("a biped is as high as it stands, at whatever angle its scene has it")
 
 TEST_CASE("a rig whose joints are bound at one place, all or most of them, has roles and a height by its skin") {
   SourceMesh mesh = with_skin(named_rig(kMixamo));
+  take_notes();
   CHECK(build_character(mesh, "a.glb").rig.pivots.empty());
+  CHECK(take_notes().empty());
   const std::vector<Bone> bound = mesh.rig.bones;
   for (std::size_t b = 0; b < bound.size(); ++b) {
     if (b % 3 != 0) mesh.rig.bones[b].inverse_bind = Affine::Identity();
   }
   CHECK(build_character(mesh, "a.glb").rig.pivots.size() == mesh.rig.nodes.size());
+  const std::vector<std::string> notes = take_notes();
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0].find("a.glb: its joints are bound at one place") == 0);
   for (Bone& bone : mesh.rig.bones) bone.inverse_bind = Affine::Identity();
   for (Node& node : mesh.rig.nodes) node.local = Affine::Identity();
   Character character = build_character(mesh, "a.glb");

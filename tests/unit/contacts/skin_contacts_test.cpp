@@ -61,7 +61,7 @@ bool same_bits(const Vec3& l, const Vec3& r) { return std::memcmp(&l, &r, sizeof
 
 }  // namespace
 
-TEST_CASE("the contacts of a body in motion are CGAL's: none missing, none extra") {
+TEST_CASE("the contacts of a body in motion are CGAL's: none missing, none extra" * doctest::test_suite("long runs")) {
   std::size_t total = 0;
   for (const auto& frame : moving_human().frames) {
     CAPTURE(frame.name);

@@ -57,7 +57,8 @@ SkinContacts meeting_at(const std::vector<float>& a, const std::vector<float>& b
 
 }  // namespace
 
-TEST_CASE("steps of two bodies: what poses on the way have is found, and nothing else") {
+TEST_CASE("steps of two bodies: what poses on the way have is found, and nothing else" *
+          doctest::test_suite("long runs")) {
   constexpr int kPoses = 32;
   std::size_t total = 0, passed = 0;
   for (const std::size_t frame : {0, 12}) {

@@ -24,7 +24,7 @@ StepJob step_of(const Pose& from, const Pose& to) {
 
 }  // namespace
 
-TEST_CASE("steps: what poses on the way have is found, and nothing else") {
+TEST_CASE("steps: what poses on the way have is found, and nothing else" * doctest::test_suite("long runs")) {
   const auto& frames = moving_human().frames;
   constexpr int kPoses = 64;
   int begun = 0, ended = 0, only_between = 0, kept = 0;

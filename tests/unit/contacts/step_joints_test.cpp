@@ -78,7 +78,7 @@ void check_none_is_made_up(const StepContacts& found, const MovingJoints& joints
 
 }  // namespace
 
-TEST_CASE("steps of joints: what poses on the way have is found, and nothing else") {
+TEST_CASE("steps of joints: what poses on the way have is found, and nothing else" * doctest::test_suite("long runs")) {
   const auto& frames = moving_human().frames;
   int seen = 0, begun = 0;
   for (const auto order : {MovingJoints::Order::kFlat, MovingJoints::Order::kDownTheSkeleton}) {

@@ -481,6 +481,11 @@ TEST_CASE("a question with a wrong argument finds nothing and names the field") 
   REQUIRE(body.set_pose(pose_of(bones)) == SC_OK);
   body.steps();
   CHECK(body.status() == sc_status{SC_TOO_SMALL, SC_FIELD_BODIES});
+  body.contacts(body);
+  CHECK(body.status() == sc_status{SC_ALIASED, SC_FIELD_BODIES});
+  const Body none;
+  CHECK(body.penetrations(none).count == 0);
+  CHECK(body.status() == sc_status{SC_NULL, SC_FIELD_BODIES});
   CHECK(sc_create_body(nullptr, nullptr, nullptr) == sc_status{SC_NULL, SC_FIELD_ASSET});
   sc_penetrations found{nullptr, 5, 5};
   CHECK(sc_find_penetrations(nullptr, nullptr, nullptr, &found) == sc_status{SC_NULL, SC_FIELD_BODIES});

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # cmake -D NM=<nm> -D LIBRARY=<archive> -P symbol_rules.cmake: fails where the archive needs what the runtime must not use.
-# model.cpp alone, and for now character.cpp, may call malloc.
+# model.cpp alone may call malloc.
 execute_process(COMMAND ${NM} -u -C ${LIBRARY} OUTPUT_VARIABLE symbols RESULT_VARIABLE result)
-foreach(source model.cpp character.cpp)
+foreach(source model.cpp)
   string(FIND "${symbols}" "\n${source}." first)
   if(first GREATER -1)
     string(SUBSTRING "${symbols}" 0 ${first} before)
