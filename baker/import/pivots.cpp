@@ -2,6 +2,7 @@
 #include "import/pivots.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -16,8 +17,8 @@ void add_weighted(Weighted& sum, const Vec3& position, double weight) {
   sum.second += weight;
 }
 
-// Whether all joints are bound near one place, or more than half of them at one, and most of the skin that these move
-// is elsewhere.
+// Whether all joints are bound near one place, or a quarter of them at one, and most of the skin that these move is
+// elsewhere. The others may be twists, which some exporters bind well.
 bool are_bound_elsewhere(const SourceRig& rig, const std::vector<Vec3>& positions) {
   std::vector<Weighted> moved(rig.bones.size(), {Vec3::Zero(), 0});
   Eigen::AlignedBox3d skin;
@@ -38,25 +39,25 @@ bool are_bound_elsewhere(const SourceRig& rig, const std::vector<Vec3>& position
   constexpr double kNear = 0.15, kAtOne = 1e-4, kAway = 0.2;  // of the skin's size
   constexpr std::size_t kJointsMin = 3;
   const double size = skin.diagonal().norm();
-  // Where more than half of them are at one place, the median of each coordinate is there.
-  Vec3 middle = Vec3::Zero();
-  for (Index axis = 0; axis < 3 && !joints.empty(); ++axis) {
-    const auto half = joints.begin() + static_cast<std::ptrdiff_t>(joints.size() / 2);
-    std::nth_element(joints.begin(), half, joints.end(),
-                     [&](const auto& l, const auto& r) { return l.first[axis] < r.first[axis]; });
-    middle[axis] = half->first[axis];
-  }
-  const auto are_away = [&](double within, std::size_t least) {
-    std::size_t count = 0;
-    double away = 0;
-    for (const auto& [joint, distance] : joints) {
-      if (!((joint - middle).norm() <= within * size)) continue;
-      ++count;
-      away += distance;
-    }
-    return count >= std::max(kJointsMin, least) && away > kAway * size * static_cast<double>(count);
+  const auto are_away = [&](std::size_t count, double distances) {
+    return count >= kJointsMin && distances > kAway * size * static_cast<double>(count);
   };
-  return are_away(kNear, joints.size()) || are_away(kAtOne, joints.size() / 2 + 1);
+  Eigen::AlignedBox3d box;
+  double all = 0;
+  std::map<std::array<double, 3>, std::pair<std::size_t, double>> at_one;  // how many, and the sum of their distances
+  for (const auto& [joint, distance] : joints) {
+    box.extend(joint);
+    all += distance;
+    const Vec3 cell = (joint / (kAtOne * size)).array().round();
+    auto& [count, distances] = at_one[{cell.x(), cell.y(), cell.z()}];
+    ++count;
+    distances += distance;
+  }
+  if (!box.isEmpty() && box.diagonal().norm() < 2 * kNear * size && are_away(joints.size(), all)) return true;
+  return std::any_of(at_one.begin(), at_one.end(), [&](const auto& place) {
+    const auto& [count, distances] = place.second;
+    return 4 * count >= joints.size() && are_away(count, distances);
+  });
 }
 
 }  // namespace
