@@ -127,6 +127,7 @@ namespace Spherechain
         Tolerance = 44,
         Transform = 45,
         Allocator = 46,
+        Query = 47,
     }
 
     public enum Side : int  // sc_side
@@ -270,7 +271,7 @@ namespace Spherechain
     {
         /// <summary>SC_RULE_VERSION; others are refused</summary>
         public uint Version;
-        /// <summary>the pose's units. Below it parts just touch, and what is deeper is no touch; 0: the next four</summary>
+        /// <summary>the pose's units. Below it parts just touch, and what is deeper is no touch; 0: the next five</summary>
         public float TouchDepth;
         /// <summary>a touch is less deep than touch_metres metres, but at least touch_min and at most touch_max</summary>
         public float TouchMetres, TouchMin, TouchMax;
@@ -329,7 +330,7 @@ namespace Spherechain
         /// <summary>moves `part`, in the order of the model's joints; SC_NO_JOINT where none does</summary>
         public uint Joint;
         public PenetrationClass Kind;
-        /// <summary>unit length. `part`, moved by distance * direction, no longer intersects `other`. Of a part that meets itself: of the triangles that intersect</summary>
+        /// <summary>in the pose's space, of unit length. `part`, moved by distance * direction, no longer intersects `other`. Of a part that meets itself: of the triangles that intersect</summary>
         public Vec3 Direction;
         /// <summary>measures.depth, or up to a quarter more where `previous` keeps the direction</summary>
         public float Distance;
@@ -437,7 +438,7 @@ namespace Spherechain
             public byte* SourceSha256;
             /// <summary>sc_hash_positions() of the whole rest pose</summary>
             public ulong SourceRestHash;
-            /// <summary>the character's own axes; orthonormal, left x up = forward</summary>
+            /// <summary>the character's own axes, as its rest pose has them: estimates, no world's axes; orthonormal, left x up = forward</summary>
             public Vec3 Origin, Left, Up, Forward;
             /// <summary>source units</summary>
             public float Height;
@@ -540,7 +541,7 @@ namespace Spherechain
         {
             public Scope Scope;
             public Detail Detail;
-            /// <summary>of a body with itself, by spheres and regions; null: the asset's ignored pairs</summary>
+            /// <summary>of a body with itself alone, by spheres and regions; null: the asset's ignored pairs</summary>
             public Filter* Filter;
             public ulong* IgnoredParts;
             public ulong* IgnoredPartsOfOther;
@@ -593,7 +594,6 @@ namespace Spherechain
 
         public unsafe struct Ground  // sc_ground
         {
-            /// <summary>of unit length</summary>
             public Vec3 Up;
             /// <summary>up . p = height on the plane</summary>
             public float Height;

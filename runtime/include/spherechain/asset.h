@@ -58,7 +58,8 @@ typedef struct sc_asset_info {
   const char* source_file;
   const char* source_sha256;
   uint64_t source_rest_hash;         /* sc_hash_positions() of the whole rest pose */
-  sc_vec3 origin, left, up, forward; /* the character's own axes; orthonormal, left x up = forward */
+  sc_vec3 origin, left, up, forward; /* the character's own axes, as its rest pose has them: estimates, no world's axes;
+                                        orthonormal, left x up = forward */
   float height;                      /* source units */
   float metres_per_unit;
 } sc_asset_info;

@@ -35,14 +35,14 @@ SC_ENUM(sc_detail){
 typedef struct sc_query {
   sc_scope scope SC_ZERO;
   sc_detail detail SC_ZERO;
-  const sc_filter* filter SC_ZERO;       /* of a body with itself, by spheres and regions; null: the asset's ignored pairs */
-  /* With another body, and in the ground: sc_part_words() words; bit p: body part p meets nothing; null: all meet. */
+  const sc_filter* filter SC_ZERO; /* of a body with itself alone, by spheres and regions; null: the asset's ignored pairs */
+  /* Of two bodies alone, and of the ground: sc_part_words() words; bit p: body part p meets nothing; null: all meet. */
   const uint64_t* ignored_parts SC_ZERO;
   const uint64_t* ignored_parts_of_other SC_ZERO;
   const sc_rule* rule SC_ZERO;           /* null: sc_default_rule() */
   uint32_t classes SC_ZERO;              /* bit k: penetrations of class k are listed; 0: faults alone */
   size_t limit SC_ZERO;                  /* the worst so many; 0: as many as there is room for */
-  /* The last penetrations of the same question: directions of faults then stay steady (sc_penetration.distance). The
+  /* The last penetrations of the same question: directions of faults then stay where they are nearly as good (sc_penetration.distance). The
    * body's last list is valid for that long; who asks several questions in turn keeps a copy of each list. */
   const sc_penetration* previous SC_ZERO;
   size_t previous_count SC_ZERO;
@@ -85,7 +85,8 @@ typedef struct sc_steps {
 
 /* A plane, and how far the ground is above it. */
 typedef struct sc_ground {
-  sc_vec3 up SC_ZERO;   /* of unit length */
+  /* Of unit length: the world's, from which sc_asset_info.up, the character's own, may differ by degrees. */
+  sc_vec3 up SC_ZERO;
   float height SC_ZERO; /* up . p = height on the plane */
   /* Null, or: how far the ground is above the plane at p; called for each vertex of the skin, in no certain order. */
   float (*terrain)(const void* user, sc_vec3 p) SC_ZERO;

@@ -43,7 +43,7 @@ typedef struct sc_penetration {
   uint32_t part, other;
   uint32_t joint; /* moves `part`, in the order of the model's joints; SC_NO_JOINT where none does */
   sc_penetration_class kind;
-  sc_vec3 direction; /* unit length. `part`, moved by distance * direction, no longer intersects `other`. Of a part that
+  sc_vec3 direction; /* in the pose's space, of unit length. `part`, moved by distance * direction, no longer intersects `other`. Of a part that
                         meets itself: of the triangles that intersect */
   float distance;    /* measures.depth, or up to a quarter more where `previous` keeps the direction */
   sc_vec3 centre;    /* of the line where the parts cross */

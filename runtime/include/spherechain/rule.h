@@ -24,7 +24,7 @@ SC_ENUM(sc_relation){
 };
 
 /* The measurements of two body parts that intersect. A class follows from them alone: results that were stored can be
- * classified again. */
+ * classified again, those of SC_DETAIL_FULL by any rule, quick ones by the rule that they were asked with. */
 typedef struct sc_measures {
   float depth;             /* > 0: the way out; the pose's units */
   float volume;            /* of the one part inside the other; negative: not known. The pose's units */
@@ -46,7 +46,7 @@ typedef struct sc_measures {
  * a default is a new version. */
 typedef struct sc_rule {
   uint32_t version;  /* SC_RULE_VERSION; others are refused */
-  float touch_depth; /* the pose's units. Below it parts just touch, and what is deeper is no touch; 0: the next four */
+  float touch_depth; /* the pose's units. Below it parts just touch, and what is deeper is no touch; 0: the next five */
   float touch_metres, touch_min, touch_max; /* a touch is less deep than touch_metres metres, but at least touch_min and
                                                at most touch_max */
   float touch_times; /* or up to so many times that, where less goes in than `swallowed` and it is no fold */

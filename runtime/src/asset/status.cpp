@@ -78,6 +78,7 @@ constexpr std::pair<sc_field, const char*> kFieldNames[] = {
     {SC_FIELD_TOLERANCE, "tolerance"},
     {SC_FIELD_TRANSFORM, "transform"},
     {SC_FIELD_ALLOCATOR, "allocator"},
+    {SC_FIELD_QUERY, "query"},
 };
 
 template <typename Texts, typename Value>

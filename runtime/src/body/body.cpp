@@ -133,6 +133,21 @@ Status check(const sc_body* body, const sc_body* other, const void* found) {
                                                                            : done();
 }
 
+// Of a body with itself, or of two. What would be left unread is refused.
+Status check_query(const sc_query* query, const sc_body* other) {
+  if (query == nullptr) {
+    return done();
+  }
+  constexpr std::uint32_t kClasses = (1U << (SC_CLASS_PENETRATION + 1)) - 1;
+  const bool has_parts = query->ignored_parts != nullptr || query->ignored_parts_of_other != nullptr;
+  const bool is_known = (query->detail == SC_DETAIL_QUICK || query->detail == SC_DETAIL_FULL) &&
+                        (query->classes == 0 || (query->classes & kClasses) != 0);
+  return !is_known                                      ? refuse(SC_BAD_VALUE, SC_FIELD_QUERY)
+         : other == nullptr && has_parts                ? refuse(SC_BAD_VALUE, SC_FIELD_IGNORED_PARTS)
+         : other != nullptr && query->filter != nullptr ? refuse(SC_BAD_VALUE, SC_FIELD_FILTER)
+                                                        : done();
+}
+
 sc_query query_of(const sc_query* query) { return query == nullptr ? sc_query{} : *query; }
 
 Status check_room(const sc_body& body, std::size_t words) {
@@ -396,6 +411,7 @@ sc_status sc_find_contacts(sc_body* body, const sc_body* other, const sc_query* 
   if (found != nullptr) {
     *found = {};
   }
+  status = status == SC_OK ? check_query(query, other) : status;
   if (status != SC_OK) {
     return status;
   }
@@ -413,6 +429,7 @@ sc_status sc_find_penetrations(sc_body* body, const sc_body* other, const sc_que
   if (found != nullptr) {
     *found = {};
   }
+  status = status == SC_OK ? check_query(query, other) : status;
   if (status != SC_OK) {
     return status;
   }
@@ -478,10 +495,11 @@ sc_status sc_find_sphere_pairs(sc_body* body, const sc_query* query, sc_sphere_p
 }
 
 sc_status sc_find_steps(sc_body* body, const sc_body* other, const sc_query* query, sc_steps* found) noexcept {
-  const Status status = check(body, other, found);
+  Status status = check(body, other, found);
   if (found != nullptr) {
     *found = {};
   }
+  status = status == SC_OK ? check_query(query, other) : status;
   if (status != SC_OK) {
     return status;
   }
