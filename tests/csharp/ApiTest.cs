@@ -294,7 +294,7 @@ public static class ApiTest
         using (Body other = new Body(model))
         {
             JointTransform beside = Beside(model, 0.3f);
-            Query query = new Query { Detail = Detail.Full, IgnoredParts = model.PartSet(0), Filter = new Filter(model) };
+            Query query = new Query { Detail = Detail.Full, Filter = new Filter(model) };
             Ground ground = new Ground { Up = model.Up, Height = model.Origin.Y };
             other.SetPose(clip.Frames[0], kColumns);
             body.SetPose(clip.Frames[0], kColumns);

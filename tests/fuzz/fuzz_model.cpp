@@ -118,13 +118,13 @@ class Asking {
     Random& random = c_.random;
     query.scope = static_cast<Scope>(random.below(3));
     query.detail = random.one_in(2) ? SC_DETAIL_FULL : SC_DETAIL_QUICK;
-    query.classes = random.one_in(2) ? static_cast<std::uint32_t>(random.bits()) : 0;
+    query.classes = random.one_in(2) ? static_cast<std::uint32_t>(random.bits()) | 1U << random.below(6) : 0;
     query.limit = random.one_in(3) ? random.below(4) : random.one_in(4) ? ~std::size_t{0} : 0;
     query.radius = static_cast<Radius>(random.below(2));
     query.target = draw_target(c_);
-    if (random.one_in(3)) query.filter = &filter_;
-    if (random.one_in(3)) query.ignored_parts = ignored_parts_;
-    if (random.one_in(3)) query.ignored_parts_of_other = ignored_parts_;
+    if (!of_two && random.one_in(3)) query.filter = &filter_;
+    if (of_two && random.one_in(3)) query.ignored_parts = ignored_parts_;
+    if (of_two && random.one_in(3)) query.ignored_parts_of_other = ignored_parts_;
     if (random.one_in(3)) {
       query.previous = previous_;
       query.previous_count = kPrevious;
@@ -143,8 +143,8 @@ class Asking {
         out.wanted = is_of_itself ? SC_BAD_VALUE : SC_OK;
         break;
       case 2:
-        query.filter = &filter_of_less_;
-        out.wanted = is_of_itself || question == Question::kSpheres ? SC_TOO_SMALL : SC_OK;
+        if (!of_two) query.filter = &filter_of_less_;
+        out.wanted = is_of_itself || (question == Question::kSpheres && !of_two) ? SC_TOO_SMALL : SC_OK;
         break;
       case 3:
         query.rule = &bad_rule();
