@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <tuple>
 
 #include "check/events.h"
@@ -24,10 +23,6 @@ using nlohmann::ordered_json;
 constexpr std::size_t kSampleSize = 1500;
 
 Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
-
-bool is_of(const PartMeeting& meeting, const TriangleContact& contact) {
-  return std::minmax(meeting.found.part, meeting.found.other) == std::minmax(contact.part_a, contact.part_b);
-}
 
 // A fault is worse than a contact that is none, however deep.
 std::pair<PenetrationClass, float> severity(const Penetration& found) {
@@ -55,7 +50,7 @@ bool same_pose(const Deformation& first, const Deformation& last, const BodyFram
 
 struct ClipChecker::Frames {
   std::vector<PartMeeting> meetings;             // by frame, then by parts
-  std::vector<std::vector<Triangles>> contacts;  // of a meeting that is shown: see ClipCheck::Triangles
+  std::vector<std::vector<Triangles>> contacts;  // of a meeting that is shown: the triangles that intersect
   PageMotion motion;
   HiddenJoints hidden;
   bool loops = false;
@@ -108,7 +103,7 @@ ClipChecker::Frames ClipChecker::look(const ClipFrames& clip, const Told& told) 
     out.contacts.resize(out.meetings.size());
     for (const TriangleContact& contact : contacts) {
       std::size_t m = before;
-      while (!is_of(out.meetings[m], contact)) ++m;
+      while (!are_of(out.meetings[m].found, contact.part_a, contact.part_b)) ++m;
       if (is_shown(out.meetings[m].found.kind)) out.contacts[m].push_back(triangles_of(contact));
     }
     out.motion.add(deformation, deformation.positions.empty() ? deform(sample_, sample_weights_, deformation.bones)
@@ -126,7 +121,7 @@ void ClipChecker::measure(const ClipFrames& clip, PartMeeting& meeting, std::vec
   std::vector<TriangleContact> of_them;
   triangles.clear();
   for (const TriangleContact& contact : player_.find(skin.pose())) {
-    if (!is_of(meeting, contact)) continue;
+    if (!are_of(meeting.found, contact.part_a, contact.part_b)) continue;
     of_them.push_back(contact);
     triangles.push_back(triangles_of(contact));
   }

@@ -59,6 +59,14 @@ std::vector<Meeting> FaultFinder::look(SkinPlayer& player, double frame, const T
   return out;
 }
 
+double FaultFinder::volume(double frame, const Penetration& of, const Turns& turns) {
+  const BonePose bones(animated_.asset(), clip_.pose(frame, turns).deformation);
+  const std::vector<TriangleContact> contacts = contacts_of(
+      players_[0], bones.pose(), [&](const TriangleContact& c) { return !are_of(of, c.part_a, c.part_b); });
+  const Penetration found = players_[0].measure_parts(bones.pose(), contacts);
+  return std::max(0.0, double{found.measures.volume});
+}
+
 void FaultFinder::leave_out(std::set<std::pair<std::uint32_t, std::uint32_t>> pairs) {
   left_out_ = std::move(pairs);
   seen_.clear();
@@ -129,9 +137,7 @@ std::vector<Meeting> FaultFinder::look_after(std::size_t thread, int frame, cons
     const double middle = 0.5 * (double{contact.begin} + double{contact.end});
     for (const Meeting& meeting : look(players_[thread], frame + middle, turns)) {
       const Penetration& found = meeting.found;
-      const bool is_its =
-          std::minmax(found.part, found.other) == std::minmax(contact.part_a, contact.part_b);
-      if (is_its && is_fault(found.kind)) out.push_back(meeting);
+      if (are_of(found, contact.part_a, contact.part_b) && is_fault(found.kind)) out.push_back(meeting);
     }
   }
   return out;

@@ -19,7 +19,7 @@ namespace spherechain::baker {
 // What two body parts do in a frame, or between two.
 struct Meeting {
   double frame;
-  Penetration found;  // a fault: measured in full; else quickly
+  Penetration found;  // measured quickly: its volume is not known
 };
 
 // The runtime's contacts of a clip with turns, of many frames at a time. What was found in a frame holds while joints
@@ -38,6 +38,8 @@ class FaultFinder {
   // Faults on the way from each of these whole frames to the next that are none in either; where they are about
   // deepest.
   std::vector<Meeting> between(const std::vector<int>& frames, const Turns& turns);
+  // How much of the two parts is in each other there; 0 where that is not known. Source units.
+  double volume(double frame, const Penetration& of, const Turns& turns);
 
  private:
   struct Seen {

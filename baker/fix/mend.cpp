@@ -462,9 +462,10 @@ class Mender {
     out.events = goals_.events;
     out.turns = turns_;
     out.compared = compare(clip_, turns_, feet_, wrists_, mm_);
-    for (const Meeting& meeting : after) out.volume_after += volume_of(meeting.frame, meeting.found);
+    for (const Meeting& meeting : after) out.volume_after += volume_of(meeting.frame, meeting.found, turns_);
+    const Turns none(turns_.size(), Vec3::Zero());
     for (const auto& [place, before] : goals_.before()) {
-      out.volume_before += volume_of(place.frame, before);
+      out.volume_before += volume_of(place.frame, before, none);
       const auto pushes = pushes_.all().find(place);
       if (pushes == pushes_.all().end() || pushes->second.empty() || !is_fault(before.kind)) continue;
       if (mm_ * double{before.measures.depth} > kShallow) continue;
@@ -475,12 +476,12 @@ class Mender {
     }
   }
 
-  // Of what is to be mended in a whole frame, cm3.
-  double volume_of(double frame, const Penetration& found) const {
+  // How much of two parts that are to be mended is in each other in a whole frame, cm3.
+  double volume_of(double frame, const Penetration& found, const Turns& turns) {
     const MendedEvent* event = goals_.event_at({frame, found.part, found.other});
     const bool is_its = event != nullptr && event->outcome != Outcome::kAccepted && event->outcome != Outcome::kFold;
     if (!is_its || frame != std::floor(frame)) return 0;
-    return double{found.measures.volume} * std::pow(mm_ / 10, 3);
+    return finder_.volume(frame, found, turns) * std::pow(mm_ / 10, 3);
   }
 
   const AnimatedAsset& animated_;

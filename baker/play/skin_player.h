@@ -14,6 +14,11 @@ namespace spherechain::baker {
 
 class AnimatedAsset;
 
+// Whether a penetration is of these two parts, whichever goes in.
+inline bool are_of(const Penetration& found, std::uint32_t part_a, std::uint32_t part_b) {
+  return std::minmax(found.part, found.other) == std::minmax(part_a, part_b);
+}
+
 // x, y, z of each of the source's vertices, which must outlive the pose.
 sc_pose pose_of(const std::vector<float>& vertices);
 

@@ -179,8 +179,7 @@ double deepest_share(const AnimatedAsset& animated, int frame, const StepContact
     const SkinPose skin(animated, deformation);
     player.find(skin.pose());
     for (const Penetration& found : player.measure_quickly(skin.pose())) {
-      const bool is_its = std::minmax(found.part, found.other) == std::minmax(contact.part_a, contact.part_b);
-      if (is_its && double{found.measures.depth} > most) {
+      if (are_of(found, contact.part_a, contact.part_b) && double{found.measures.depth} > most) {
         most = double{found.measures.depth};
         share = at;
       }

@@ -33,14 +33,6 @@ struct GivenPose {
   bool is_given = false;
 };
 
-// Of which question the contacts are that a body holds.
-struct Asked {
-  const sc_body* other = nullptr;
-  std::uint64_t pose_of_other = 0;
-  sc_scope scope = SC_SCOPE_APART;
-  bool is_known = false;
-};
-
 }  // namespace
 }  // namespace spherechain
 
@@ -48,7 +40,6 @@ struct sc_body {
   const sc_model* model;
   sc_allocator allocator;
   spherechain::Block block;  // this, and what the pointers below point into
-  std::uint64_t pose_number;
   spherechain::GivenPose now, before;
   std::uint64_t* scratch;
   std::size_t scratch_words;
@@ -60,10 +51,11 @@ struct sc_body {
   std::uint64_t* listed;                            // a bit for each two parts
   spherechain::Span<sc_penetration> penetrations[2];  // of the last question, and of the one before
   spherechain::Span<sc_step_contact> steps;
-  bool has_spheres[2];  // of this pose, by radius
+  bool has_spheres;  // of this pose, with that radius
   sc_radius spheres_radius;
-  spherechain::Asked asked;
-  sc_contacts contacts;  // of what was asked
+  sc_contacts contacts;  // of the last question
+  bool has_contacts;     // they are all of this body with itself, in this pose and that scope
+  sc_scope contacts_scope;
 };
 
 namespace spherechain {
@@ -150,8 +142,10 @@ Status check_query(const sc_query* query, const sc_body* other) {
 
 sc_query query_of(const sc_query* query) { return query == nullptr ? sc_query{} : *query; }
 
-Status check_room(const sc_body& body, std::size_t words) {
-  return words > body.scratch_words ? refuse(SC_TOO_SMALL, SC_FIELD_BODIES) : done();
+// Whether there is room for a question about two bodies: for all pairs of their parts, and so many words.
+Status check_room(const sc_body& body, const sc_body& other, std::size_t words) {
+  const std::size_t parts = asset_of(body).part_count() * asset_of(other).part_count();
+  return parts > body.parts.size || words > body.scratch_words ? refuse(SC_TOO_SMALL, SC_FIELD_BODIES) : done();
 }
 
 // What contact jobs have in common.
@@ -188,7 +182,7 @@ Status run_contacts(sc_body& body, const sc_query& query, bool lists_all, const 
 Status find_contacts(sc_body& body, const sc_body* other, const sc_query& query, bool lists_all,
                      const std::uint64_t* listed) {
   body.contacts = {};
-  body.asked = {};
+  body.has_contacts = false;
   if (other == nullptr) {
     SkinContactJob job;
     job.asset = &body.model->asset;
@@ -198,7 +192,7 @@ Status find_contacts(sc_body& body, const sc_body* other, const sc_query& query,
     job.filter = query.filter;
     return run_contacts(body, query, lists_all, listed, job);
   }
-  const Status room = check_room(body, body_scratch_words(asset_of(body), asset_of(*other)));
+  const Status room = check_room(body, *other, body_scratch_words(asset_of(body), asset_of(*other)));
   if (room != SC_OK) {
     return room;
   }
@@ -208,19 +202,15 @@ Status find_contacts(sc_body& body, const sc_body* other, const sc_query& query,
   return run_contacts(body, query, lists_all, listed, job);
 }
 
-// The same, unless the body has them from the last question.
+// Of a body with itself they are kept from question to question. Another body may be gone, with a new one in its place.
 Status know_contacts(sc_body& body, const sc_body* other, const sc_query& query) {
-  const bool is_plain =
-      query.filter == nullptr && query.ignored_parts == nullptr && query.ignored_parts_of_other == nullptr;
-  const Asked& last = body.asked;
-  if (last.is_known && is_plain && last.other == other && last.scope == query.scope &&
-      (other == nullptr || last.pose_of_other == other->pose_number)) {
+  const bool is_kept = other == nullptr && query.filter == nullptr;
+  if (is_kept && body.has_contacts && body.contacts_scope == query.scope) {
     return done();
   }
   const Status status = find_contacts(body, other, query, true, nullptr);
-  if (status == SC_OK && is_plain) {
-    body.asked = {other, other == nullptr ? 0 : other->pose_number, query.scope, true};
-  }
+  body.has_contacts = is_kept && status == SC_OK;
+  body.contacts_scope = query.scope;
   return status;
 }
 
@@ -262,11 +252,14 @@ Status measure_contacts(sc_body& body, const sc_body* other, const sc_query& que
     return run_penetrations(body, query, list, total, job);
   }
   const std::size_t words = measure_words(asset_of(body), asset_of(*other), false, body.contacts.triangle_count);
+  const Status room = check_room(body, *other, words);
+  if (room != SC_OK) {
+    return room;
+  }
   BodyPenetrationJob job;
   job.a = side_of(body, nullptr);
   job.b = side_of(*other, nullptr);
-  return words > body.scratch_words ? refuse(SC_TOO_SMALL, SC_FIELD_BODIES)
-                                    : run_penetrations(body, query, list, total, job);
+  return run_penetrations(body, query, list, total, job);
 }
 
 // Where there is no room for all triangles: as many pairs of parts at a time as there is room for.
@@ -398,9 +391,7 @@ sc_status sc_set_pose(sc_body* body, const sc_pose* pose, const sc_transform* pl
     return refuse(SC_NULL, body == nullptr ? SC_FIELD_BODIES : SC_FIELD_BONES);
   }
   std::swap(body->now, body->before);
-  ++body->pose_number;
-  body->asked = {};
-  body->has_spheres[0] = body->has_spheres[1] = false;
+  body->has_contacts = body->has_spheres = false;
   const Status status = gather(*body, *pose, place, body->now);
   body->now.is_given = status == SC_OK;
   return status;
@@ -460,7 +451,7 @@ sc_status sc_find_sphere_pairs(sc_body* body, const sc_query* query, sc_sphere_p
   if (of.radius != SC_RADIUS_DETECT && of.radius != SC_RADIUS_FIT) {
     return refuse(SC_BAD_VALUE, SC_FIELD_RADIUS);
   }
-  if (!body->has_spheres[of.radius]) {
+  if (!body->has_spheres || body->spheres_radius != of.radius) {
     RefitJob refit;
     refit.asset = &body->model->asset;
     refit.pose = body->now.pose;
@@ -469,8 +460,8 @@ sc_status sc_find_sphere_pairs(sc_body* body, const sc_query* query, sc_sphere_p
     refit.spheres = body->spheres.data;
     refit.sphere_capacity = body->spheres.size;
     status = refit.run();
-    body->has_spheres[of.radius] = status == SC_OK;
-    body->has_spheres[1 - of.radius] = false;
+    body->has_spheres = status == SC_OK;
+    body->spheres_radius = of.radius;
     if (status != SC_OK) {
       return status;
     }
@@ -519,11 +510,12 @@ sc_status sc_find_steps(sc_body* body, const sc_body* other, const sc_query* que
   if (other != nullptr) {
     job.b = motion_of(*other, of.ignored_parts_of_other);
   }
-  const Status room = check_room(*body, body->steps.size == 0
-                                            ? SIZE_MAX
-                                            : sc_step_scratch_words(&job.a, other == nullptr ? nullptr : &job.b));
-  if (room != SC_OK) {
-    return room;
+  if (body->steps.size == 0) {
+    return refuse(SC_TOO_SMALL, SC_FIELD_BODIES);
+  }
+  status = other == nullptr ? done() : check_room(*body, *other, sc_step_scratch_words(&job.a, &job.b));
+  if (status != SC_OK) {
+    return status;
   }
   job.target = of.target;
   job.filter = other == nullptr ? of.filter : nullptr;

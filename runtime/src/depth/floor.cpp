@@ -5,6 +5,7 @@
 
 #include "asset/memory.h"
 #include "asset/status.h"
+#include "depth/measure.h"
 #include "depth/posed_skin.h"
 #include "depth/rule.h"
 #include "pairs/filter.h"
@@ -117,14 +118,17 @@ class Measurer {
       if (!measure(part, found) || (job.classes != 0 && (job.classes >> found.kind & 1) == 0)) {
         continue;
       }
-      if (job.penetration_count < job.penetration_capacity) {
-        job.penetrations[job.penetration_count] = found;
+      if (job.penetration_capacity > 0) {
+        keep_worst({job.penetrations, job.penetration_capacity}, found, job.penetration_count);
       }
       ++job.penetration_count;
     }
-    return job.penetration_capacity > 0 && job.penetration_count > job.penetration_capacity
-               ? refuse(SC_OVERFLOW, SC_FIELD_PENETRATIONS)
-               : done();
+    if (job.penetration_capacity == 0 || job.penetration_count <= job.penetration_capacity) {
+      return done();
+    }
+    std::sort(job.penetrations, job.penetrations + job.penetration_capacity,
+              [](const Penetration& l, const Penetration& r) { return l.part < r.part; });
+    return refuse(SC_OVERFLOW, SC_FIELD_PENETRATIONS);
   }
 
  private:

@@ -85,7 +85,7 @@ class Measurer {
         if ((in_.classes >> one.kind & 1) == 0) {
           continue;
         }
-        keep(one, found);
+        keep_worst(in_.out, one, found);
       }
       ++found;
     }
@@ -98,18 +98,6 @@ class Measurer {
   }
 
  private:
-  // The `count`-th that was found, in place of the least bad one where the list is full.
-  void keep(const Penetration& one, std::size_t count) const {
-    if (count < in_.out.size) {
-      in_.out[count] = one;
-      return;
-    }
-    Penetration* const least = std::max_element(in_.out.begin(), in_.out.end(), is_worse);
-    if (is_worse(one, *least)) {
-      *least = one;
-    }
-  }
-
   std::size_t part_a(const TriangleContact& contact) const {
     return surface_a_.parts[surface_a_.place_of_source[contact.triangle_a]];
   }
@@ -460,6 +448,13 @@ class Measurer {
 };
 
 }  // namespace
+
+void keep_worst(Span<Penetration> list, const Penetration& one, std::size_t count) {
+  Penetration* const place = count < list.size ? list.data + count : std::max_element(list.begin(), list.end(), is_worse);
+  if (count < list.size || is_worse(one, *place)) {
+    *place = one;
+  }
+}
 
 std::size_t measure_words(const AssetView& a, const AssetView& b, bool are_one, std::size_t contact_count) {
   Memory memory(are_one);

@@ -64,6 +64,8 @@ TEST_CASE("fix: an arm that is turned into a wall comes back by as much, and no 
   CHECK(clip["events"][0]["outcome"] == "cleared");
   CHECK(clip["events"][0]["depth_mm_before"].get<double>() == doctest::Approx(68).epsilon(0.05));
   CHECK(clip["events"][0]["depth_mm_after"] == 0);
+  CHECK(clip["volume_cm3_before"].get<double>() > 1);
+  CHECK(clip["volume_cm3_after"] == 0);
   CHECK(clip["turn_degrees"]["max"].get<double>() == doctest::Approx(2.5).epsilon(0.04));  // two joints share it
 }
 

@@ -274,6 +274,42 @@ TEST_CASE("two bodies, the ground and the way between two poses give what the jo
   for (const Penetration& part : below) CHECK(part.deepest.position.y >= low.y);
 }
 
+TEST_CASE("another body of more parts than there is room for is refused, however few its triangles are") {
+  const Winding winding;
+  TinyAsset tiny = random_band(5, 1);
+  for (int k = 0; k < 60; ++k) tiny.parts.parts.push_back({"part " + std::to_string(k)});
+  const TinySkin skin = add_bones(tiny, kBones, 2);
+  add_skin(tiny, &skin, 4);
+  const OpenedAsset opened(tiny.parts);
+  REQUIRE_MESSAGE(opened.status == SC_OK, opened.message);
+  const Model model = winding.model(), many(opened.bytes.data(), opened.bytes.size(), nullptr, 0, SC_LAYOUT_UNSET);
+  REQUIRE_MESSAGE(many, many.message());
+  BodyDef def;
+  def.largest_other = many.handle();
+  Body narrow(model), roomy(model, def), other(many);
+  for (Body* body : {&narrow, &roomy, &other}) REQUIRE(body->set_pose(pose_of(Winding::bones(1))) == SC_OK);
+  narrow.contacts(other);
+  CHECK(narrow.status() == sc_status{SC_TOO_SMALL, SC_FIELD_BODIES});
+  CHECK(narrow.penetrations(other).count == 0);
+  CHECK(narrow.status() == sc_status{SC_TOO_SMALL, SC_FIELD_BODIES});
+  roomy.contacts(other);
+  CHECK(roomy.status() == SC_OK);
+}
+
+TEST_CASE("contacts with another body are of the pose that it has now") {
+  const Winding winding;
+  const Model model = winding.model();
+  Body body(model), other(model);
+  REQUIRE(body.set_pose(pose_of(Winding::bones(1))) == SC_OK);
+  REQUIRE(other.set_pose(pose_of(Winding::bones(2))) == SC_OK);
+  const std::size_t near = body.contacts(other, {SC_SCOPE_APART, SC_DETAIL_FULL}).triangle_total;
+  CHECK(near > 0);
+  other = Body(model);  // perhaps where the old one was
+  const Transform away{{1000, 0, 0}, {0, 0, 0, 1}, {1, 1, 1}};
+  REQUIRE(other.set_pose(pose_of(Winding::bones(2)), away) == SC_OK);
+  CHECK(body.contacts(other, {SC_SCOPE_APART, SC_DETAIL_FULL}).triangle_total == 0);
+}
+
 TEST_CASE("directions of faults stay steady with the last list as history") {
   const Winding winding;
   const Model model = winding.model();
