@@ -274,6 +274,28 @@ TEST_CASE("two bodies, the ground and the way between two poses give what the jo
   for (const Penetration& part : below) CHECK(part.deepest.position.y >= low.y);
 }
 
+TEST_CASE("with a limit the deepest parts below the ground are listed, whatever their numbers") {
+  const Winding winding;
+  const Model model = winding.model();
+  Body body(model);
+  int not_the_first = 0;
+  for (unsigned frame = 0; frame < 10; ++frame) {
+    REQUIRE(body.set_pose(pose_of(Winding::bones(frame))) == SC_OK);
+    const Ground ground{{0, 1, 0}, 0.5F, nullptr, nullptr};
+    Query query;
+    query.classes = kAllClasses;
+    const Penetrations found = body.below(ground, query);
+    const std::vector<Penetration> all(found.begin(), found.end());
+    query.limit = 1;
+    const Penetrations deepest = body.below(ground, query);
+    CHECK(deepest.total == all.size());
+    if (all.empty()) continue;
+    CHECK(same_bits<Penetration>({deepest.begin(), deepest.end()}, {all[0]}));
+    not_the_first += std::any_of(all.begin(), all.end(), [&](const auto& one) { return one.part < all[0].part; }) ? 1 : 0;
+  }
+  CHECK(not_the_first > 2);
+}
+
 TEST_CASE("another body of more parts than there is room for is refused, however few its triangles are") {
   const Winding winding;
   TinyAsset tiny = random_band(5, 1);
