@@ -107,7 +107,7 @@ Side side_of_region(const Regions& regions, std::size_t region) {
   return region < regions.limbs.size() ? regions.limbs[region].side : Side::kNone;
 }
 
-// What has no name that says it moves about once more than the part that it hangs on.
+// Sets each part's mobility. A part whose name does not say it has one more than the part that it hangs on.
 void find_mobility(std::vector<BodyPart>& parts) {
   for (BodyPart& part : parts) {
     int mobility = mobility_of(part.name), steps = 0;

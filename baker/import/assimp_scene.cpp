@@ -173,7 +173,7 @@ class SkinPlacement {
 
   const AssimpScene& flat_;
   bool is_one_space_;
-  bool is_bind_pose_ = true;  // the rest pose, of the meshes so far
+  bool is_bind_pose_ = true;  // whether the meshes so far are at rest as they were bound
   std::vector<std::string> placed_by_rest_pose_;
   Affine nodes_to_rest_ = Affine::Identity();
   Affine rest_pose_to_rest_ = Affine::Identity();

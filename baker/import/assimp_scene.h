@@ -34,7 +34,7 @@ struct AssimpScene {
   std::vector<Affine> world;
   std::unordered_map<std::string, Index> by_name;  // the first of that name, as assimp refers to them
   std::vector<MeshInstance> instances;
-  std::vector<std::string> placed_by_rest_pose;  // meshes of which the bind pose does not say how they lie to others
+  std::vector<std::string> placed_by_rest_pose;  // meshes whose bind pose does not say how they lie to others
 };
 
 // The link of a chain that takes an FBX node's PostRotation back; null where there is none.

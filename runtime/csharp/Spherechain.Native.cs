@@ -330,13 +330,12 @@ namespace Spherechain
         /// <summary>moves `part`, in the order of the model's joints; SC_NO_JOINT where none does</summary>
         public uint Joint;
         public PenetrationClass Kind;
-        /// <summary>in the pose's space, of unit length. `part`, moved by distance * direction, no longer intersects `other`. Of a part that meets itself: of the triangles that intersect</summary>
         public Vec3 Direction;
         /// <summary>measures.depth, or up to a quarter more where `previous` keeps the direction</summary>
         public float Distance;
-        /// <summary>of the line where the parts cross</summary>
+        /// <summary>of the line where the parts cross; of the ground: of the box</summary>
         public Vec3 Centre;
-        /// <summary>a box around that line</summary>
+        /// <summary>a box around that line; of the ground: around the skin below it</summary>
         public Vec3 Low, High;
         /// <summary>the points that part last; deepest_other - deepest = distance * direction</summary>
         public SkinPoint Deepest, DeepestOther;
@@ -541,7 +540,6 @@ namespace Spherechain
         {
             public Scope Scope;
             public Detail Detail;
-            /// <summary>of a body with itself alone, by spheres and regions; null: the asset's ignored pairs</summary>
             public Filter* Filter;
             public ulong* IgnoredParts;
             public ulong* IgnoredPartsOfOther;

@@ -14,7 +14,7 @@ import re
 import subprocess
 import sys
 
-# Left out of C#, because Model and Body do it. Functions that take one of these structs are left out, too.
+# These structs and functions are left out of C#, and functions that take such a struct: Model and Body stand for them.
 UNUSED = re.compile(r"""sc_(?!crowd_|scene_)\w+_job | sc_job_body | sc_motion | sc_blend | sc_place_bones | sc_check_rest_pose
     | sc_detect_table_words | sc_prepare_\w+ | sc_(?!crowd_|scene_)\w+_scratch_words | sc_skin_table_words""", re.X)
 # Constants that C# cannot have, and why.

@@ -152,7 +152,7 @@ export interface SkinPoint {
   weights: Float32Array;
 }
 
-/** Two body parts that intersect, and how deep. The kind follows from `depth` and all from `volume` on. */
+/** Two body parts that intersect, and how deep. The kind follows from the measurements: `depth`, and those from `visible` on. */
 export interface Penetration {
   /** Indices into Asset.parts: `part` goes into `other`. It is the more mobile of the two, a hand in a thigh; of two alike
    * the smaller. Both are the same where a part meets itself. */

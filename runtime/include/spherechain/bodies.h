@@ -63,8 +63,8 @@ typedef struct sc_body_contact_job {
   size_t sphere_capacity SC_ZERO;
   sc_triangle_contact* triangles SC_ZERO;
   size_t triangle_capacity SC_ZERO;
-  /* Null, or: triangles of which two parts are listed; the others are not counted either. One body: bit a n + b - a (a + 1)
-   * / 2 of n parts, a <= b; two: bit a n + b, n the parts of b. */
+  /* A bit for each two parts whose triangles are listed; the others' are not counted either. Null: all are listed. Of one
+   * body with n parts it is bit a n + b - a (a + 1) / 2, a <= b; of two, bit a n + b, where b has n parts. */
   const uint64_t* listed_parts SC_ZERO;
   size_t part_count SC_ZERO, sphere_count SC_ZERO, triangle_count SC_ZERO;
 #if defined(__cplusplus)
@@ -73,8 +73,8 @@ typedef struct sc_body_contact_job {
 } sc_body_contact_job;
 
 /* Measures two bodies' contacts: fill a and b as in the sc_body_contact_job that found `contacts`, and pass its whole
- * list of triangles. What an sc_penetration_job says holds here, too. `part` is of body a, `other` of body b. Classes are SC_CLASS_SHELL (most of it is hidden), SC_CLASS_TOUCH and SC_CLASS_PENETRATION. They
- * compare with the unit and the height of body a's asset: of a character and a prop, a is the character.
+ * list of triangles. What an sc_penetration_job says holds here, too. `part` is of body a, `other` of body b.
+ * Classes are SC_CLASS_SHELL (most of it is hidden), SC_CLASS_TOUCH and SC_CLASS_PENETRATION. They compare with the unit and the height of body a's asset: of a character and a prop, a is the character.
  *
  * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
 typedef struct sc_body_penetration_job {
@@ -90,16 +90,17 @@ typedef struct sc_body_penetration_job {
   size_t scratch_words SC_ZERO;
   sc_penetration* penetrations SC_ZERO; /* out: sorted by (part, other) */
   size_t penetration_capacity SC_ZERO;
-  uint32_t classes SC_ZERO; /* bit k: penetrations of class k are listed and counted; 0: all */
-  size_t kept_count SC_ZERO; /* in: entries that are there already, of other contacts; they are counted, too */
+  /* Bit k: penetrations of class k are listed and counted; 0: all. A job that only counts counts all. */
+  uint32_t classes SC_ZERO;
+  size_t kept_count SC_ZERO; /* in: entries that the list has already, of other contacts; they are counted, too */
   size_t penetration_count SC_ZERO;
 #if defined(__cplusplus)
   sc_status run() noexcept;
 #endif
 } sc_body_penetration_job;
 
-/* What of a body is below the ground: all body parts with a vertex there, and how deep it is straight down. `other` is
- * SC_FLOOR; the direction is `up`; `volume` is of the part below the ground, known where its skin does not end there; the box is around that part.
+/* The body parts with a vertex below the ground, and how deep it is straight down. `other` is SC_FLOOR; the direction is
+ * `up`; `volume` is of the part below the ground, known where its skin does not end there; the box is around that part.
  * Classes are SC_CLASS_TOUCH and SC_CLASS_PENETRATION.
  *
  * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */

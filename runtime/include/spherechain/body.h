@@ -15,12 +15,13 @@ typedef struct sc_body sc_body;
 
 typedef struct sc_body_def {
   /* Room for pairs of triangles that intersect; 0: half of the model's triangles, and at least 4,096. Where more
-   * intersect, penetrations are still exact, and cost more: they are measured in several rounds. */
+   * intersect, penetrations are found in several rounds, with the same results. If two parts alone have more, the first
+   * so many of theirs are measured. */
   size_t max_triangles SC_ZERO;
-  size_t max_penetrations SC_ZERO; /* 0: 128; the worst are kept */
-  const sc_model* largest_other SC_ZERO;  /* of all that it will meet; null: none is larger than its own model */
-  int32_t finds_steps SC_ZERO;            /* 1: sc_find_steps() works; it needs much memory */
-  const sc_allocator* allocator SC_ZERO;  /* copied; null: the model's */
+  size_t max_penetrations SC_ZERO;       /* 0: 128; the worst are kept */
+  const sc_model* largest_other SC_ZERO; /* of all that it will meet; null: none is larger than its own model */
+  int32_t finds_steps SC_ZERO;           /* 1: sc_find_steps() works; it needs much memory */
+  const sc_allocator* allocator SC_ZERO; /* copied; null: the model's */
 } sc_body_def;
 
 SC_ENUM(sc_detail){
@@ -35,24 +36,27 @@ SC_ENUM(sc_detail){
 typedef struct sc_query {
   sc_scope scope SC_ZERO;
   sc_detail detail SC_ZERO;
-  const sc_filter* filter SC_ZERO; /* of a body with itself alone, by spheres and regions; null: the asset's ignored pairs */
-  /* Of two bodies alone, and of the ground: sc_part_words() words; bit p: body part p meets nothing; null: all meet. */
+  /* Pairs of spheres that do not meet, in questions about a body with itself; null: the asset's ignored pairs. */
+  const sc_filter* filter SC_ZERO;
+  /* Body parts that meet nothing, in questions about two bodies or the ground: bit p of sc_part_words() words is part
+   * p's; null: all parts meet. */
   const uint64_t* ignored_parts SC_ZERO;
   const uint64_t* ignored_parts_of_other SC_ZERO;
-  const sc_rule* rule SC_ZERO;           /* null: sc_default_rule() */
-  uint32_t classes SC_ZERO;              /* bit k: penetrations of class k are listed; 0: faults alone */
-  size_t limit SC_ZERO;                  /* the worst so many; 0: as many as there is room for */
-  /* The last penetrations of the same question: directions of faults then stay where they are nearly as good (sc_penetration.distance). The
-   * body's last list is valid for that long; who asks several questions in turn keeps a copy of each list. */
+  const sc_rule* rule SC_ZERO; /* null: sc_default_rule() */
+  uint32_t classes SC_ZERO;    /* bit k: penetrations of class k are listed; 0: faults alone */
+  size_t limit SC_ZERO;        /* the worst so many; 0: as many as there is room for */
+  /* The last penetrations of the same question: the direction of a fault then stays while it is nearly as good as the
+   * shortest (sc_penetration.distance). The body's last list is valid for that long; who asks several questions in turn
+   * keeps a copy of each list. */
   const sc_penetration* previous SC_ZERO;
   size_t previous_count SC_ZERO;
-  float tolerance SC_ZERO;               /* of steps, a share of the height; 0: 0.0001 */
-  sc_radius radius SC_ZERO;              /* of spheres and their pairs */
-  sc_target target SC_ZERO;              /* the same answers on every one */
+  float tolerance SC_ZERO;  /* of steps, a share of the height; 0: 0.0001 */
+  sc_radius radius SC_ZERO; /* of spheres and their pairs */
+  sc_target target SC_ZERO; /* the same answers on every one */
 } sc_query;
 
-/* Faults first, by class, then the deepest first. `total` is larger than `count` where there was no room, or the limit is
- * less: the worst are there. Valid until the body's second next question about penetrations. */
+/* Faults first, by class, then the deepest first. `total` is larger than `count` where there was no room, or the limit
+ * is less: the worst are there. Valid until the body's second next question about penetrations. */
 typedef struct sc_penetrations {
   const sc_penetration* items;
   size_t count, total;
@@ -85,7 +89,7 @@ typedef struct sc_steps {
 
 /* A plane, and how far the ground is above it. */
 typedef struct sc_ground {
-  /* Of unit length: the world's, from which sc_asset_info.up, the character's own, may differ by degrees. */
+  /* The world's upward direction, of unit length. The character's own, sc_asset_info.up, may differ by degrees. */
   sc_vec3 up SC_ZERO;
   float height SC_ZERO; /* up . p = height on the plane */
   /* Null, or: how far the ground is above the plane at p; called for each vertex of the skin, in no certain order. */
@@ -102,25 +106,27 @@ SPHERECHAIN_API sc_status sc_create_body(const sc_model* model, const sc_body_de
 SPHERECHAIN_API void sc_destroy_body(sc_body* body) SC_NOEXCEPT; /* null is fine */
 
 /* The new pose; the old one becomes the pose before. Bones come in the order of the model's joints, and are copied, as
- * morph weights are; vertices are not: they must stay as they are until the next pose, and for steps until the one after
- * it. `place` moves the bones into the world, where other bodies are; null: they are there already. Errors as of a job's pose; SC_BAD_VALUE with
- * SC_FIELD_TRANSFORM: `place` is not finite, or the pose has vertices, too. After an error the body has no pose. */
+ * morph weights are; vertices are not: they must stay as they are until the next pose, and for steps until the one
+ * after it. `place` moves the bones into the world, where other bodies are; null: they are there already. Errors as of
+ * a job's pose; SC_BAD_VALUE with SC_FIELD_TRANSFORM: `place` is not finite, or the pose has vertices, too. After an
+ * error the body has no pose. */
 SPHERECHAIN_API sc_status sc_set_pose(sc_body* body, const sc_pose* pose, const sc_transform* place) SC_NOEXCEPT;
 
 /* The questions. `other` null: the body with itself; else another body, which may be of the same model. Parts of `body`
- * come first. `query` null: all zeros. SC_OK; SC_NULL, SC_BAD_VALUE, SC_NOT_IN_ASSET, SC_UNSUPPORTED_TARGET; with
- * SC_FIELD_BODIES: SC_ALIASED (`other` is the body), SC_TOO_SMALL (the other's model is larger than the body was made for;
- * of steps: it was not made for them), SC_NOT_OPEN (a body has no pose; of steps: no pose before). After an error the
- * result is empty. */
+ * come first. `query` null: all zeros. SC_OK; SC_NULL, SC_BAD_VALUE (also: the query has ignored parts and
+ * `other` is null, or a filter and it is not), SC_NOT_IN_ASSET, SC_UNSUPPORTED_TARGET; with SC_FIELD_BODIES: SC_ALIASED
+ * (`other` is the body), SC_TOO_SMALL (the other's model is larger than the body was made for; of steps: it was not
+ * made for them), SC_NOT_OPEN (a body has no pose; of steps: no pose before). After an error the result is empty. */
 SPHERECHAIN_API sc_status sc_find_penetrations(sc_body* body, const sc_body* other, const sc_query* query,
                                                sc_penetrations* found) SC_NOEXCEPT;
 SPHERECHAIN_API sc_status sc_find_contacts(sc_body* body, const sc_body* other, const sc_query* query,
                                            sc_contacts* found) SC_NOEXCEPT;
-SPHERECHAIN_API sc_status sc_find_sphere_pairs(sc_body* body, const sc_query* query, sc_sphere_pairs* found) SC_NOEXCEPT;
-/* What touches on the way from the pose before to this one, matrices taken as moving linearly. */
+SPHERECHAIN_API sc_status sc_find_sphere_pairs(sc_body* body, const sc_query* query,
+                                               sc_sphere_pairs* found) SC_NOEXCEPT;
+/* The touches on the way from the pose before to this one. Matrices are taken as moving linearly. */
 SPHERECHAIN_API sc_status sc_find_steps(sc_body* body, const sc_body* other, const sc_query* query,
                                         sc_steps* found) SC_NOEXCEPT;
-/* What is below the ground: `other` is SC_FLOOR. */
+/* The body parts below the ground; `other` is SC_FLOOR. */
 SPHERECHAIN_API sc_status sc_find_in_ground(sc_body* body, const sc_ground* ground, const sc_query* query,
                                             sc_penetrations* found) SC_NOEXCEPT;
 /* A box that holds all of the skin for certain: from bones somewhat too large, from vertices exact. */
@@ -137,7 +143,7 @@ using Query = sc_query;
 using SpherePairs = sc_sphere_pairs;
 using Ground = sc_ground;
 
-/* For loops; `total` counts what there was no room for, too. */
+/* Loops go over the list; `total` also counts those that there was no room for. */
 struct Penetrations : sc_penetrations {
   const Penetration* begin() const noexcept { return items; }
   const Penetration* end() const noexcept { return items + count; }
@@ -201,9 +207,7 @@ class Body {
     return out;
   }
   Steps steps(const Query& query = {}) noexcept { return ask<Steps>(sc_find_steps, nullptr, query); }
-  Steps steps(const Body& other, const Query& query = {}) noexcept {
-    return ask<Steps>(sc_find_steps, &other, query);
-  }
+  Steps steps(const Body& other, const Query& query = {}) noexcept { return ask<Steps>(sc_find_steps, &other, query); }
   Status bounds(Vec3& low, Vec3& high) noexcept { return status_ = sc_get_bounds(handle_, &low, &high); }
 
  private:

@@ -38,16 +38,17 @@ typedef struct sc_skin_point {
 
 /* Two body parts that intersect. Lengths in the pose's units. */
 typedef struct sc_penetration {
-  /* `part` goes into `other`. Of one body's parts it is the more mobile (sc_part.mobility), of two alike the smaller, or
-   * a part that meets itself. Of two bodies `part` is of the first. */
+  /* `part` goes into `other`. Of one body's parts it is the more mobile (sc_part.mobility), of two alike the smaller,
+   * or a part that meets itself. Of two bodies `part` is of the first. */
   uint32_t part, other;
   uint32_t joint; /* moves `part`, in the order of the model's joints; SC_NO_JOINT where none does */
   sc_penetration_class kind;
-  sc_vec3 direction; /* in the pose's space, of unit length. `part`, moved by distance * direction, no longer intersects `other`. Of a part that
-                        meets itself: of the triangles that intersect */
+  /* In the pose's space, of unit length. `part`, moved by distance * direction, no longer intersects `other`. Of a part
+   * that meets itself, one side of the triangles that intersect moves. */
+  sc_vec3 direction;
   float distance;    /* measures.depth, or up to a quarter more where `previous` keeps the direction */
-  sc_vec3 centre;    /* of the line where the parts cross */
-  sc_vec3 low, high; /* a box around that line */
+  sc_vec3 centre;    /* of the line where the parts cross; of the ground: of the box */
+  sc_vec3 low, high; /* a box around that line; of the ground: around the skin below it */
   sc_skin_point deepest, deepest_other; /* the points that part last; deepest_other - deepest = distance * direction */
   sc_measures measures;
 } sc_penetration;
@@ -57,9 +58,9 @@ typedef struct sc_penetration {
 /* Two body parts that touch in a step. Times are shares of the step: 0 is its start, 1 its end. */
 typedef struct sc_step_contact {
   uint32_t part_a, part_b;
-  int32_t at_start, at_end; /* 1: they intersect there: more say the contacts of that pose */
-  float begin;              /* the first time at which they touch; 0 with at_start */
-  float end;                /* the last time; 1 with at_end. In between they may part and meet again */
+  int32_t at_start, at_end;        /* 1: they intersect there: more say the contacts of that pose */
+  float begin;                     /* the first time at which they touch; 0 with at_start */
+  float end;                       /* the last time; 1 with at_end. In between they may part and meet again */
   uint32_t triangle_a, triangle_b; /* that touch at `begin`, by the source's numbers; SC_NO_TRIANGLE with at_start */
   sc_vec3 at;                      /* where they do; zero with at_start */
 } sc_step_contact;

@@ -5,8 +5,7 @@
 #include "spherechain/asset.h"
 
 /* The pairs of spheres that a question leaves out: the asset's own at first (sc_reset_filter), then edited by the
- * caller. The buffer is the caller's. A question reads the filter while it runs: do not
- * edit it then. */
+ * caller. The buffer is the caller's. A question reads the filter while it runs: do not edit it then. */
 typedef struct sc_filter {
   /* Bit b(b-1)/2 + a, a < b: this pair of spheres is ignored. sc_pair_words() words. */
   uint64_t* ignored SC_ZERO;

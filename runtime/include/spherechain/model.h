@@ -7,7 +7,7 @@
 /* Memory for models and bodies. It is called when they are made and destroyed, never in a frame, on the thread that
  * makes or destroys them. Alignment is a power of two, 64 at most. */
 typedef struct sc_allocator {
-  void* (*allocate)(void* user, size_t size, size_t alignment) SC_ZERO; /* null on failure */
+  void* (*allocate)(void* user, size_t size, size_t alignment)SC_ZERO; /* null on failure */
   void (*release)(void* user, void* memory, size_t size, size_t alignment) SC_ZERO;
   void* user SC_ZERO;
 } sc_allocator;
@@ -36,8 +36,9 @@ typedef struct sc_triangle {
 extern "C" {
 #endif
 
-/* Pass SC_ABI_VERSION for `abi`. On failure *model is null and `message`, where it is not null, says what to do: a status
- * of sc_asset_open() or sc_bind_joints(), SC_NULL, SC_NOT_IN_ASSET (the asset has no triangles) or SC_NO_MEMORY. */
+/* Pass SC_ABI_VERSION for `abi`. On failure *model is null and `message`, where it is not null, says what to do: a
+ * status of sc_asset_open() or sc_bind_joints(), SC_NULL, SC_NOT_IN_ASSET (the asset has no triangles) or SC_NO_MEMORY.
+ */
 SPHERECHAIN_API sc_status sc_create_model(uint32_t abi, const sc_model_def* def, sc_model** model, char* message,
                                           size_t message_size) SC_NOEXCEPT;
 SPHERECHAIN_API void sc_destroy_model(sc_model* model) SC_NOEXCEPT; /* null is fine */

@@ -35,8 +35,9 @@ typedef struct sc_penetration_job {
    * small. */
   sc_penetration* penetrations SC_ZERO; /* null, with a capacity of 0: count only */
   size_t penetration_capacity SC_ZERO;
-  uint32_t classes SC_ZERO; /* bit k: penetrations of class k are listed and counted; 0: all */
-  size_t kept_count SC_ZERO; /* in: entries that are there already, of other contacts; they are counted, too */
+  /* Bit k: penetrations of class k are listed and counted; 0: all. A job that only counts counts all. */
+  uint32_t classes SC_ZERO;
+  size_t kept_count SC_ZERO; /* in: entries that the list has already, of other contacts; they are counted, too */
   size_t penetration_count SC_ZERO;
 #if defined(__cplusplus)
   sc_status run() noexcept;

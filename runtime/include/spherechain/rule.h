@@ -4,7 +4,8 @@
 
 #include "spherechain/types.h"
 
-/* How a person would call it. The first that applies. From SC_CLASS_DEEP_FOLD on it is a fault. */
+/* A contact of two parts as a person would call it: the first class that applies. From SC_CLASS_DEEP_FOLD on it is a
+ * fault. */
 SC_ENUM(sc_penetration_class){
     SC_CLASS_REST = 0,        /* the two spots touch in the rest pose, too */
     SC_CLASS_SHELL = 1,       /* another layer of the same place (a garment on the body), or most of it is hidden */
@@ -23,27 +24,28 @@ SC_ENUM(sc_relation){
     SC_RELATION_TWO_BODIES = 4, /* they are of two bodies */
 };
 
-/* The measurements of two body parts that intersect. A class follows from them alone: results that were stored can be
- * classified again, those of SC_DETAIL_FULL by any rule, quick ones by the rule that they were asked with. */
+/* The measurements of two body parts that intersect. A class follows from them alone, so stored results can be
+ * classified again: quick ones by the rule that they were asked with; those of SC_DETAIL_FULL by other rules too, where
+ * `swallowed` is known or the rule sets touch_depth. */
 typedef struct sc_measures {
-  float depth;             /* > 0: the way out; the pose's units */
-  float volume;            /* of the one part inside the other; negative: not known. The pose's units */
-  float contour_length;    /* of the line where the parts cross; the pose's units */
-  float visible;           /* 0 to 1: the share of that line that can be seen from outside; 1 where it was not looked at */
-  float touching;          /* 0 to 1: the share of that line that touches at rest */
-  float facing;            /* -1 to 1: 1 where the sides lie flat on each other */
-  float rest_distance;     /* between the two spots at rest, a share of the height; infinite of two bodies */
-  float thickness;         /* of the thinner part, there, in the pose's units; negative: not known */
-  float swallowed;         /* depth / thickness * visible length / side of a square like the smaller part; negative: not
-                              known, for the class does not depend on it */
-  float height, metre;     /* how long the character's height and a metre are in the pose's units */
+  float depth;          /* > 0: the way out; the pose's units */
+  float volume;         /* of the one part inside the other; negative: not known. The pose's units */
+  float contour_length; /* of the line where the parts cross; the pose's units */
+  float visible;        /* 0 to 1: the share of that line that can be seen from outside; 1 where it was not looked at */
+  float touching;       /* 0 to 1: the share of that line that touches at rest */
+  float facing;         /* -1 to 1: 1 where the sides lie flat on each other */
+  float rest_distance;  /* between the two spots at rest, a share of the height; infinite of two bodies */
+  float thickness;      /* of the thinner part, there, in the pose's units; negative: not known */
+  float swallowed;      /* depth / thickness * visible length / side of a square like the smaller part; negative: not
+                           known, for the class does not depend on it */
+  float height, metre;  /* how long the character's height and a metre are in the pose's units */
   sc_relation relation;
-  int32_t is_one_piece;    /* 1: the two spots are of one piece of skin */
+  int32_t is_one_piece; /* 1: the two spots are of one piece of skin */
 } sc_measures;
 
-/* The limits of a class. A fault is what a person would mend; sc_default_rule() was tuned on pictures that people judged
- * (docs/concepts.md). Lengths are shares of the character's height, but for `touch_depth` and `touch_metres`. A change of
- * a default is a new version. */
+/* The limits of a class. A fault is what a person would mend; sc_default_rule() was tuned on pictures that people
+ * judged (docs/concepts.md). Lengths are shares of the character's height, but for `touch_depth` and `touch_metres`. A
+ * change of a default is a new version. */
 typedef struct sc_rule {
   uint32_t version;  /* SC_RULE_VERSION; others are refused */
   float touch_depth; /* the pose's units. Below it parts just touch, and what is deeper is no touch; 0: the next five */

@@ -34,7 +34,9 @@ void release_with_malloc(void*, void* memory, std::size_t, std::size_t) {
   std::free(block);
 }
 
-constexpr std::size_t words_of(std::size_t bytes) { return (bytes + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t); }
+constexpr std::size_t words_of(std::size_t bytes) {
+  return (bytes + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t);
+}
 
 // Tables of an open asset; of null words it only counts them.
 std::size_t lay_out(sc_model& model, const sc_model_def& def, std::uint64_t* words) {
@@ -94,8 +96,8 @@ Status choose_allocator(const sc_allocator* wanted, const sc_allocator& otherwis
 }
 
 bool Block::allocate(const sc_allocator& allocator, std::size_t wanted) {
-  words = static_cast<std::uint64_t*>(
-      allocator.allocate(allocator.user, wanted * sizeof(std::uint64_t), kBlockAlignment));
+  words =
+      static_cast<std::uint64_t*>(allocator.allocate(allocator.user, wanted * sizeof(std::uint64_t), kBlockAlignment));
   count = words == nullptr ? 0 : wanted;
   return words != nullptr;
 }

@@ -33,7 +33,7 @@ inline bool is_worse(const Penetration& l, const Penetration& r) {
   return l.kind != r.kind ? l.kind > r.kind : l.measures.depth > r.measures.depth;
 }
 
-// Puts in the `count`-th that was found; where the list is full, in place of the least bad one.
+// Adds a penetration, before which so many were found; where the list is full, in place of the least bad one.
 void keep_worst(Span<Penetration> list, const Penetration& one, std::size_t count);
 
 std::size_t measure_words(const AssetView& a, const AssetView& b, bool are_one, std::size_t contact_count);

@@ -62,7 +62,8 @@ std::size_t check_one_answer(const std::filesystem::path& character) {
 
 }  // namespace
 
-TEST_CASE("characters of SPHERECHAIN_TEST_DATA: game, play and check find the same faults in every frame of every clip") {
+TEST_CASE(
+    "characters of SPHERECHAIN_TEST_DATA: game, play and check find the same faults in every frame of every clip") {
   const char* folder = std::getenv("SPHERECHAIN_TEST_DATA");
   if (folder == nullptr) {
     MESSAGE("skipped: SPHERECHAIN_TEST_DATA names no folder of rigged characters");

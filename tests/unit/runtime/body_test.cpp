@@ -41,7 +41,8 @@ struct Winding {
     for (std::size_t b = kBones; b-- > 0;) joints.push_back(sc_asset_bone(&opened->asset, b));
   }
   Model model(const sc_allocator* allocator = nullptr) const {
-    return Model(ModelDef{opened->bytes.data(), opened->bytes.size(), joints.data(), joints.size(), SC_ROWS_3X4, allocator});
+    return Model(
+        ModelDef{opened->bytes.data(), opened->bytes.size(), joints.data(), joints.size(), SC_ROWS_3X4, allocator});
   }
   // The last bone stands for what none moves.
   static std::vector<Matrix> bones(unsigned seed) {
@@ -291,7 +292,8 @@ TEST_CASE("with a limit the deepest parts below the ground are listed, whatever 
     CHECK(deepest.total == all.size());
     if (all.empty()) continue;
     CHECK(same_bits<Penetration>({deepest.begin(), deepest.end()}, {all[0]}));
-    not_the_first += std::any_of(all.begin(), all.end(), [&](const auto& one) { return one.part < all[0].part; }) ? 1 : 0;
+    not_the_first +=
+        std::any_of(all.begin(), all.end(), [&](const auto& one) { return one.part < all[0].part; }) ? 1 : 0;
   }
   CHECK(not_the_first > 2);
 }
