@@ -226,10 +226,10 @@ std::vector<PartName> name_parts(const SourceRig& rig, const Roles& roles) { ret
 int mobility_of(const std::string& part) {
   // By how names end; the longer of two ends comes first.
   constexpr std::pair<std::string_view, int> kMobility[]{
-      {"forefoot", 8},       {"hand", 8},      {"lower foreleg", 7}, {"forearm", 7}, {"upper foreleg", 6},
-      {"arm", 6},            {"foot", 5},      {"lower hind leg", 4}, {"shin", 4},   {"leg", 3},
-      {"thigh", 3},          {"head", 2},      {"neck", 1},          {"shoulder", 1}, {"hips", 0},
-      {"abdomen", 0},        {"chest", 0},     {"body", 0},          {"torso", 0}};
+      {"forefoot", 8}, {"hand", 8},  {"lower foreleg", 7},  {"forearm", 7},  {"upper foreleg", 6},
+      {"arm", 6},      {"foot", 5},  {"lower hind leg", 4}, {"shin", 4},     {"leg", 3},
+      {"thigh", 3},    {"head", 2},  {"neck", 1},           {"shoulder", 1}, {"hips", 0},
+      {"abdomen", 0},  {"chest", 0}, {"body", 0},           {"torso", 0}};
   for (const auto& [end, mobility] : kMobility) {
     if (part.ends_with(end)) return mobility;
   }

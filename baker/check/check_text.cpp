@@ -53,8 +53,7 @@ std::string summary_text(const Summary& s) {
 }  // namespace
 
 std::string parts_text(const Event& event) {
-  return event.parts[0] == event.parts[1] ? event.parts[0] + " in itself"
-                                          : event.parts[0] + " in " + event.parts[1];
+  return event.parts[0] == event.parts[1] ? event.parts[0] + " in itself" : event.parts[0] + " in " + event.parts[1];
 }
 
 std::string frames_text(const Event& event) {

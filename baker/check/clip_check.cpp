@@ -273,7 +273,8 @@ ClipCheck ClipChecker::check(std::size_t index, const Told& told) {
         triangles.insert(triangles.end(), frames.contacts[m].begin(), frames.contacts[m].end());
       }
     }
-    std::stable_sort(found.begin(), found.end(), [](const auto& l, const auto& r) { return l.measures.depth > r.measures.depth; });
+    std::stable_sort(found.begin(), found.end(),
+                     [](const auto& l, const auto& r) { return l.measures.depth > r.measures.depth; });
     contacts.add(triangles);
     penetrations.add(entries_of(found, mm_));
   }

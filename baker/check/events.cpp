@@ -30,7 +30,8 @@ void close_loop(std::vector<EventSpan>& spans, int frames, const std::vector<Par
   EventSpan &first = spans.front(), &last = spans.back();
   if (!is_bridged(last.to, first.from + period)) return;
   first.from = last.from;
-  if (meetings[last.deepest].found.measures.depth > meetings[first.deepest].found.measures.depth) first.deepest = last.deepest;
+  if (meetings[last.deepest].found.measures.depth > meetings[first.deepest].found.measures.depth)
+    first.deepest = last.deepest;
   first.meetings.insert(first.meetings.begin(), last.meetings.begin(), last.meetings.end());
   spans.pop_back();
 }

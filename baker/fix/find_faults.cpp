@@ -61,8 +61,8 @@ std::vector<Meeting> FaultFinder::look(SkinPlayer& player, double frame, const T
 
 double FaultFinder::volume(double frame, const Penetration& of, const Turns& turns) {
   const BonePose bones(animated_.asset(), clip_.pose(frame, turns).deformation);
-  const std::vector<TriangleContact> contacts = contacts_of(
-      players_[0], bones.pose(), [&](const TriangleContact& c) { return !are_of(of, c.part_a, c.part_b); });
+  const std::vector<TriangleContact> contacts =
+      contacts_of(players_[0], bones.pose(), [&](const TriangleContact& c) { return !are_of(of, c.part_a, c.part_b); });
   const Penetration found = players_[0].measure_parts(bones.pose(), contacts);
   return std::max(0.0, double{found.measures.volume});
 }

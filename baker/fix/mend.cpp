@@ -237,7 +237,8 @@ class Mender {
       if (!Goals::is_wanted(goals_.events[e])) continue;
       double left = 0;
       for (const Meeting& m : now) {
-        if (is_fault(m.found.kind) && Goals::is_in(place_of(m), goals_.events[e])) left += double{m.found.measures.depth};
+        if (is_fault(m.found.kind) && Goals::is_in(place_of(m), goals_.events[e]))
+          left += double{m.found.measures.depth};
       }
       if (round == 0) progress_[e].begin = left;
       if (progress_[e].gets_better(left, round) || left == 0) continue;

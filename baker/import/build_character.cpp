@@ -132,7 +132,8 @@ Character build_character(const SourceMesh& source, const std::string& name) {
   if (!pivots.empty()) {
     character.rig.pivots = std::move(pivots);
     character.rig.are_pivots_from_skin = true;
-    add_note(name + ": its joints are bound at one place: where they turn is guessed from the skin (bind each joint where " +
+    add_note(name +
+             ": its joints are bound at one place: where they turn is guessed from the skin (bind each joint where " +
              "it turns)");
   }
 

@@ -328,7 +328,8 @@ SourceMesh read_with_assimp(const std::filesystem::path& path, const ImportOptio
   }
   note_characters(flat.nodes, skinned, out.up_hint, read.name);
   for (const std::string& mesh : flat.placed_by_rest_pose) {
-    add_note(read.name + ": mesh '" + mesh + "' shares no joint with the others: where it is bound is guessed from the " +
+    add_note(read.name + ": mesh '" + mesh +
+             "' shares no joint with the others: where it is bound is guessed from the " +
              "rest pose (export the skeleton in its bind pose)");
   }
   note_lost_files(read, path.parent_path());

@@ -27,8 +27,8 @@ class FrameLists {
   std::vector<T> entries_;
 };
 
-// The part that goes in, the other one, class, depth in mm, direction out, the deepest point of the part, the share that is
-// visible or -1, volume in ml or -1.
+// The part that goes in, the other one, class, depth in mm, direction out, the deepest point of the part, the share
+// that is visible or -1, volume in ml or -1.
 using PenetrationEntry = std::array<float, 12>;
 inline std::vector<PenetrationEntry> entries_of(const std::vector<Penetration>& penetrations, double mm) {
   std::vector<PenetrationEntry> out;
@@ -36,8 +36,8 @@ inline std::vector<PenetrationEntry> entries_of(const std::vector<Penetration>& 
     const double ml = p.measures.volume >= 0 ? std::pow(mm / 10, 3) * double{p.measures.volume} : -1;
     const spherechain::Vec3 &d = p.direction, &at = p.deepest.position;
     out.push_back({static_cast<float>(p.part), static_cast<float>(p.other), static_cast<float>(p.kind),
-                   static_cast<float>(mm * double{p.measures.depth}), d.x, d.y, d.z, at.x, at.y, at.z, p.measures.visible,
-                   static_cast<float>(ml)});
+                   static_cast<float>(mm * double{p.measures.depth}), d.x, d.y, d.z, at.x, at.y, at.z,
+                   p.measures.visible, static_cast<float>(ml)});
   }
   return out;
 }

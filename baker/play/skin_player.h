@@ -35,8 +35,8 @@ class BonePose {
 // Whole meshes as poses have no bones.
 bool moved_by_bones(const OpenAsset& asset, const Deformation& deformation);
 
-// The same where bones move the asset, else the deformed vertices. Every command asks so, as games do: vertices that are
-// skinned elsewhere differ in their last bits, and so may a contact that hardly is one.
+// The same where bones move the asset, else the deformed vertices. Every command asks so, as games do: vertices that
+// are skinned elsewhere differ in their last bits, and so may a contact that hardly is one.
 class SkinPose {
  public:
   SkinPose(const AnimatedAsset& animated, const Deformation& deformation);

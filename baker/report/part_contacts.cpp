@@ -101,7 +101,8 @@ PartCounts PartContacts::add(int frame, const std::vector<Pair>& triangles,
     const bool fault = is_fault(found.kind);
     has_fault = has_fault || fault;
     if (fault) add_to_runs(contact.fault_runs, number, before);
-    if (std::pair(fault, mm_ * double{found.measures.depth}) > std::pair(is_fault(contact.kind), contact.depth_mm_max)) {
+    if (std::pair(fault, mm_ * double{found.measures.depth}) >
+        std::pair(is_fault(contact.kind), contact.depth_mm_max)) {
       contact.depth_mm_max = mm_ * double{found.measures.depth};
       contact.frame_of_depth_max = number;
       contact.direction = found.direction;
@@ -152,10 +153,9 @@ std::string PartContacts::rows(const Clip& clip) const {
     const char* unit = runs.size() == 1 && runs[0].first == runs[0].second ? "frame " : "frames ";
     const char* fold = contact.kind == SC_CLASS_DEEP_FOLD ? "deep fold, " : "";
     const auto& [x, y, z] = contact.direction;
-    cells.push_back(
-        {name(first), first == second ? "itself" : name(second), unit + runs_text(runs),
-         fmt::format("{}{:.0f} mm deep at {}, out along ({:.2f}, {:.2f}, {:.2f})", fold, contact.depth_mm_max,
-                     frame_text(contact.frame_of_depth_max), x, y, z)});
+    cells.push_back({name(first), first == second ? "itself" : name(second), unit + runs_text(runs),
+                     fmt::format("{}{:.0f} mm deep at {}, out along ({:.2f}, {:.2f}, {:.2f})", fold,
+                                 contact.depth_mm_max, frame_text(contact.frame_of_depth_max), x, y, z)});
   }
   std::string rest;
   for (const auto& [kind, count] : others) {

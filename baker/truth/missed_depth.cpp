@@ -11,7 +11,8 @@ MissedDepth::MissedDepth(const std::vector<std::uint8_t>& part_of, const FrameTr
                          const std::vector<Pair>& reported, const std::vector<Penetration>& penetrations)
     : part_of_(part_of) {
   for (const Penetration& found : penetrations) {
-    if (is_fault(found.kind)) depths_[{std::min(found.part, found.other), std::max(found.part, found.other)}] = double{found.measures.depth};
+    if (is_fault(found.kind))
+      depths_[{std::min(found.part, found.other), std::max(found.part, found.other)}] = double{found.measures.depth};
   }
   for (const TrueContact& contact : truth.contacts) {
     if (!std::binary_search(reported.begin(), reported.end(), contact.spheres)) continue;

@@ -65,8 +65,8 @@ void fight(const std::vector<char>& file, const samples::GltfCharacter& clips) {
   const AssetInfo info = model.info();
   const Transform red_place = place_of(info, false, 0), blue_place = place_of(info, true, kDistance * info.height);
   const Ground floor{{0, 1, 0}, 0, nullptr, nullptr};  // in a glTF file y is up
-  Query all;  // touches, too
-  all.classes = ~0U;
+  Query all;
+  all.classes = ~0U;  // touches, too
   all.detail = SC_DETAIL_FULL;
   const double duration = clips.duration(0);
   Score score;

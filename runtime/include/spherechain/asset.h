@@ -24,8 +24,8 @@ typedef struct sc_bone {
 typedef struct sc_part {
   const char* name;
   sc_side side;
-  int32_t bone;   /* the bone that it follows; -1 where no bone moves it */
-  int32_t parent; /* the part that it hangs on; -1: none */
+  int32_t bone;     /* the bone that it follows; -1 where no bone moves it */
+  int32_t parent;   /* the part that it hangs on; -1: none */
   int32_t mobility; /* of two parts that intersect the one with more goes into the other: from a hand's, over forearm,
                        upper arm, foot, shin, thigh and head, down to the trunk's 0; others have one more than the part
                        that they hang on */

@@ -26,13 +26,13 @@ typedef struct sc_penetration_job {
   size_t contact_count SC_ZERO;
   const sc_penetration* previous SC_ZERO; /* null: none */
   size_t previous_count SC_ZERO;
-  int32_t quick SC_ZERO;      /* 1: along one direction, without volume and visibility, but for likely faults: these are
-                                 measured in full, so that both forms find the same faults. For games */
+  int32_t quick SC_ZERO; /* 1: along one direction, without volume and visibility, but for likely faults: these are
+                            measured in full, so that both forms find the same faults. For games */
   const sc_rule* rule SC_ZERO; /* null: sc_default_rule() */
-  uint64_t* scratch SC_ZERO;  /* sc_penetration_scratch_words() words; nothing is kept there between runs */
+  uint64_t* scratch SC_ZERO;   /* sc_penetration_scratch_words() words; nothing is kept there between runs */
   size_t scratch_words SC_ZERO;
-  /* Out. Sorted by the two parts, the lesser number first. The count says how many there are, also where the list is too
-   * small. */
+  /* Out. Sorted by the two parts, the lesser number first. The count says how many there are, also where the list is
+   * too small. */
   sc_penetration* penetrations SC_ZERO; /* null, with a capacity of 0: count only */
   size_t penetration_capacity SC_ZERO;
   /* Bit k: penetrations of class k are listed and counted; 0: all. A job that only counts counts all. */

@@ -36,8 +36,8 @@ typedef struct sc_skin_contact_job {
   size_t sphere_capacity SC_ZERO;
   sc_triangle_contact* triangles SC_ZERO;
   size_t triangle_capacity SC_ZERO;
-  /* A bit for each two parts whose triangles are listed; the others' are not counted either. Null: all are listed. Of one
-   * body with n parts it is bit a n + b - a (a + 1) / 2, a <= b; of two, bit a n + b, where b has n parts. */
+  /* A bit for each two parts whose triangles are listed; the others' are not counted either. Null: all are listed. Of
+   * one body with n parts it is bit a n + b - a (a + 1) / 2, a <= b; of two, bit a n + b, where b has n parts. */
   const uint64_t* listed_parts SC_ZERO;
   size_t part_count SC_ZERO, sphere_count SC_ZERO, triangle_count SC_ZERO;
 #if defined(__cplusplus)

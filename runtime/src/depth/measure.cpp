@@ -229,8 +229,7 @@ class Measurer {
   TwoParts two_parts(Span<Segment3> all, std::size_t seen) {
     has_outer_layers_ = seen > 0;
     TwoParts out{all, surface_a_.parts[all[0].a], surface_b_.parts[all[0].b], {}, false, 0};
-    out.contour =
-        contour_of(memory_.skins, {all.data, seen > 0 ? seen : all.size}, rest_height_, memory_.contour);
+    out.contour = contour_of(memory_.skins, {all.data, seen > 0 ? seen : all.size}, rest_height_, memory_.contour);
     const double area_a = double{surface_a_.part_areas[out.a]}, area_b = double{surface_b_.part_areas[out.b]};
     const int mobility_a = in_.a.asset->part(out.a).mobility, mobility_b = in_.b.asset->part(out.b).mobility;
     out.swaps =
@@ -274,8 +273,8 @@ class Measurer {
       return seen;
     }
     // In sight below an open coat?
-    const Seen below = memory_.visibility.look(contour_of(memory_.skins, parts.all, rest_height_, memory_.contour), axes,
-                                               kClearance * height_);
+    const Seen below = memory_.visibility.look(contour_of(memory_.skins, parts.all, rest_height_, memory_.contour),
+                                               axes, kClearance * height_);
     return below.share > seen.share ? below : seen;
   }
 
@@ -313,7 +312,8 @@ class Measurer {
       out.measures.thickness = known->measures.thickness;
       out.measures.swallowed = known->measures.swallowed;
     } else if (depends_on_swallowed(in_.limits, out.measures)) {
-      const SkinPoint &a = parts.swaps ? out.deepest_other : out.deepest, &b = parts.swaps ? out.deepest : out.deepest_other;
+      const SkinPoint &a = parts.swaps ? out.deepest_other : out.deepest,
+                      &b = parts.swaps ? out.deepest : out.deepest_other;
       const double thin = thickness_of(parts, exit.direction, a.position, b.position);
       out.measures.thickness = static_cast<float>(thin);
       out.measures.swallowed = static_cast<float>(double{out.distance} / thin * seen.length / parts.side);
@@ -450,7 +450,8 @@ class Measurer {
 }  // namespace
 
 void keep_worst(Span<Penetration> list, const Penetration& one, std::size_t count) {
-  Penetration* const place = count < list.size ? list.data + count : std::max_element(list.begin(), list.end(), is_worse);
+  Penetration* const place =
+      count < list.size ? list.data + count : std::max_element(list.begin(), list.end(), is_worse);
   if (count < list.size || is_worse(one, *place)) {
     *place = one;
   }

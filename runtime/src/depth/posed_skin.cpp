@@ -93,8 +93,8 @@ void PosedSkin::fill_clusters(const Pose& pose, Target resolved) {
 
 std::size_t PosedSkin::asked_step() const { return (surface->clusters.size + kAsked - 1) / kAsked; }
 
-// By some clusters, whichever parts stand in the pose: is their vertex that is farthest from a triangle's plane at rest on
-// the other side of it now?
+// By some clusters, whichever parts stand in the pose: is their vertex that is farthest from a triangle's plane at rest
+// on the other side of it now?
 double PosedSkin::find_handedness() const {
   int votes = 0;
   for (std::size_t c = 0; c < surface->clusters.size; c += asked_step()) {

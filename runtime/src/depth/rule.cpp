@@ -52,13 +52,12 @@ Status check_rule(const sc_rule* rule) {
   if (rule == nullptr) {
     return done();
   }
-  const float limits[] = {rule->touch_depth, rule->touch_metres, rule->touch_min,  rule->touch_max,   rule->touch_times,
-                          rule->swallowed,   rule->at_rest,      rule->hidden,     rule->shell,       rule->fold,
+  const float limits[] = {rule->touch_depth, rule->touch_metres, rule->touch_min, rule->touch_max, rule->touch_times,
+                          rule->swallowed,   rule->at_rest,      rule->hidden,    rule->shell,     rule->fold,
                           rule->neighbours,  rule->fold_facing,  rule->deep_fold};
   const bool are_finite = std::all_of(std::begin(limits), std::end(limits), [](float l) { return std::isfinite(l); });
-  return rule->version == SC_RULE_VERSION && are_finite && rule->touch_depth >= 0
-             ? done()
-             : refuse(SC_BAD_VALUE, SC_FIELD_RULE);
+  return rule->version == SC_RULE_VERSION && are_finite && rule->touch_depth >= 0 ? done()
+                                                                                  : refuse(SC_BAD_VALUE, SC_FIELD_RULE);
 }
 
 double touch_depth_of(const Rule& rule, double metre, double height) {

@@ -164,8 +164,8 @@ Exit shortest_exit(Sweep& sweep, const Contour& contour, const ExitSettings& set
   Double3 axes[3];
   axes_of(contour, first.direction, axes);
   const auto try_all = [&] {
-    for (const Double3& direction : {first.direction, first.way.normal, outwards * contour.normals, contour.area,
-                                     contour.largest_area}) {
+    for (const Double3& direction :
+         {first.direction, first.way.normal, outwards * contour.normals, contour.area, contour.largest_area}) {
       search.refine(direction, 2);
     }
     if (!search.has_any() || search.best().way.depth > settings.deep) {

@@ -60,7 +60,8 @@ struct ContactLists {
     return {{job.parts, job.part_capacity},
             {job.spheres, job.sphere_capacity},
             {job.triangles, job.triangle_capacity},
-            job.spheres_only != 0, job.listed_parts};
+            job.spheres_only != 0,
+            job.listed_parts};
   }
 };
 struct ContactCounts {

@@ -51,7 +51,8 @@ TEST_CASE("two balls are as deep as their radii are longer than their distance, 
     CHECK(direction_of(found).dot(Vec(0, 0.6, -0.8)) > 0.99);
     REQUIRE(found.measures.volume >= 0);
     CHECK(found.measures.volume == doctest::Approx(lens(1, distance)).epsilon(0.01));
-    CHECK(found.measures.contour_length == doctest::Approx(2 * kPi * std::sqrt(1 - distance * distance / 4)).epsilon(0.01));
+    CHECK(found.measures.contour_length ==
+          doctest::Approx(2 * kPi * std::sqrt(1 - distance * distance / 4)).epsilon(0.01));
     CHECK(found.measures.visible == 1);
     CHECK(found.kind == (distance < 1.2 ? SC_CLASS_PENETRATION : SC_CLASS_TOUCH));
   }
@@ -117,7 +118,8 @@ TEST_CASE("the deepest points are the ends of the way, and at its end the body i
   }
   // Moved so far and a little farther it is free; nine tenths of the way it is not.
   const auto after = [&](double share) {
-    return [&, share](const Vec& p) { return Vec(place(p) + share * double{plain.measures.depth} * direction_of(plain)); };
+    return
+        [&, share](const Vec& p) { return Vec(place(p) + share * double{plain.measures.depth} * direction_of(plain)); };
   };
   CHECK(shapes.measure(after(1.001)).empty());
   CHECK(!shapes.measure(after(0.9)).empty());
