@@ -193,7 +193,7 @@ scripts/accuracy.mjs build/release/bin/spherechain [CHARACTER]... [--depth CHARA
 
 | you need | take | recall | precision |
 |---|---|---|---|
-| nothing missed, nothing wrong | skin contacts (\`SkinContactJob\`) | ${percent(recall(skin))} | ${percent(precision(skin))} |
+| nothing missed, nothing wrong | skin contacts (\`body.contacts()\`) | ${percent(recall(skin))} | ${percent(precision(skin))} |
 | an alarm for a microsecond | spheres, detect radius | ${percent(recall(all))} | ${percent(precision(all))} |
 | fewer false alarms for a microsecond | spheres, fit radius | ${percent(recall(fit))} | ${percent(precision(fit))} |
 | the paper's figures | profile \`paper\`, fit radius | ${percent(recall(paper))} | ${percent(precision(paper))} |

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "mesh/error.h"
-#include "spherechain/refit.h"
-#include "spherechain/skin_contacts.h"
+#include "refit/refit_job.h"
+#include "skin/contact_jobs.h"
 
 namespace spherechain::baker {
 namespace {
@@ -28,9 +28,9 @@ class PosedAsset {
     check(sc_asset_open(&asset_, SC_ABI_VERSION, words_.data(), bytes.size(), nullptr, 0));
     info_ = sc_asset_get_info(&asset_);
     spheres_.resize(info_.sphere_count);
-    table_.resize(sc_skin_table_words(&asset_));
-    scratch_.resize(sc_skin_scratch_words(&asset_));
-    check(sc_prepare_skin(&asset_, table_.data(), table_.size()));
+    table_.resize(skin_table_words(&asset_));
+    scratch_.resize(skin_scratch_words(&asset_));
+    check(prepare_skin(&asset_, table_.data(), table_.size()));
   }
 
   void take(const RandomPoses::Pose& pose) {

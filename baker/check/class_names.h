@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "spherechain/penetrations.h"
+#include "depth/penetration_jobs.h"
 
 namespace spherechain::baker {
 

@@ -93,9 +93,11 @@ ClipChecker::Frames ClipChecker::look(const ClipFrames& clip, const Told& told) 
     told(i, clip.count);
     Deformation deformation = animated_.deformation(clip.first + i);
     const SkinPose skin(animated_, deformation);
-    const std::vector<TriangleContact>& contacts = player_.find(skin.pose());
+    player_.set_pose(skin.pose());
+    const Span<const TriangleContact> found_now = player_.triangles();
+    const std::vector<TriangleContact> contacts(found_now.begin(), found_now.end());
     const std::size_t before = out.meetings.size();
-    for (const Penetration& found : player_.measure_quickly(skin.pose())) {
+    for (const Penetration& found : player_.measure_quickly()) {
       out.meetings.push_back({i, found});
       float& visible = out.meetings.back().found.measures.visible;
       if (visible == 1 && !is_fault(found.kind)) visible = -1;  // nobody looked
@@ -118,14 +120,12 @@ ClipChecker::Frames ClipChecker::look(const ClipFrames& clip, const Told& told) 
 // Measures a meeting in full: with its volume, and where it is no fault along many directions.
 void ClipChecker::measure(const ClipFrames& clip, PartMeeting& meeting, std::vector<Triangles>& triangles) {
   const SkinPose skin(animated_, animated_.deformation(clip.first + meeting.frame));
-  std::vector<TriangleContact> of_them;
+  player_.set_pose(skin.pose());
   triangles.clear();
-  for (const TriangleContact& contact : player_.find(skin.pose())) {
-    if (!are_of(meeting.found, contact.part_a, contact.part_b)) continue;
-    of_them.push_back(contact);
-    triangles.push_back(triangles_of(contact));
+  for (const TriangleContact& contact : player_.triangles()) {
+    if (are_of(meeting.found, contact.part_a, contact.part_b)) triangles.push_back(triangles_of(contact));
   }
-  meeting.found = player_.measure_parts(skin.pose(), of_them);
+  meeting.found = player_.measure_parts(meeting.found.part, meeting.found.other).value();
 }
 
 // An event has class and depth of its worst frame, and no frame is worse than that one. Frames between others never

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "spherechain/penetrations.h"
+#include "depth/penetration_jobs.h"
 
 namespace spherechain::baker {
 

@@ -18,8 +18,8 @@ std::vector<std::vector<std::uint8_t>> parts_of_spheres(const OpenAsset& asset) 
   return out;
 }
 
-PartSkin::PartSkin(const OpenAsset& asset) : table(sc_skin_table_words(asset.handle())) {
-  check_runtime(sc_prepare_skin(asset.handle(), table.data(), table.size()));
+PartSkin::PartSkin(const OpenAsset& asset) : table(skin_table_words(asset.handle())) {
+  check_runtime(prepare_skin(asset.handle(), table.data(), table.size()));
   Surface surface;
   check_runtime(read_skin_table(asset.view(), table.data(), surface));
   // The runtime leaves out the triangles in this list. No triangle has this number.
@@ -36,7 +36,7 @@ PartSkin::PartSkin(const OpenAsset& asset) : table(sc_skin_table_words(asset.han
 }
 
 TouchingParts::TouchingParts(const AnimatedAsset& animated, const PartSkin& skin, Target target)
-    : animated_(animated), skin_(skin), target_(target), scratch_(sc_skin_scratch_words(animated.asset().handle())) {}
+    : animated_(animated), skin_(skin), target_(target), scratch_(skin_scratch_words(animated.asset().handle())) {}
 
 const std::vector<PartContact>& TouchingParts::find(const Deformation& deformation) {
   const OpenAsset& asset = animated_.asset();

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "play/play.h"
-#include "spherechain/skin_contacts.h"
+#include "skin/contact_jobs.h"
 
 namespace spherechain::baker {
 

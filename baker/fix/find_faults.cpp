@@ -42,29 +42,20 @@ FaultFinder::FaultFinder(const AnimatedAsset& animated, const TurnedClip& clip) 
   }
 }
 
-std::vector<TriangleContact> FaultFinder::contacts_of(SkinPlayer& player, const sc_pose& pose,
-                                                      const IsLeftOut& is_left_out) {
-  std::vector<TriangleContact> out = player.find(pose);
-  out.erase(std::remove_if(out.begin(), out.end(), is_left_out), out.end());
-  return out;
-}
-
 std::vector<Meeting> FaultFinder::look(SkinPlayer& player, double frame, const Turns& turns) const {
   const BonePose bones(animated_.asset(), clip_.pose(frame, turns).deformation);
-  const sc_pose pose = bones.pose();
-  const std::vector<TriangleContact> contacts = contacts_of(
-      player, pose, [&](const TriangleContact& c) { return left_out_.contains(std::minmax(c.part_a, c.part_b)); });
+  player.set_pose(bones.pose());
   std::vector<Meeting> out;
-  for (const Penetration& found : player.measure_quickly(pose, contacts)) out.push_back({frame, found});
+  const auto is_asked = [&](std::uint32_t a, std::uint32_t b) { return !left_out_.contains({a, b}); };
+  for (const Penetration& found : player.measure_quickly(is_asked)) out.push_back({frame, found});
   return out;
 }
 
 double FaultFinder::volume(double frame, const Penetration& of, const Turns& turns) {
   const BonePose bones(animated_.asset(), clip_.pose(frame, turns).deformation);
-  const std::vector<TriangleContact> contacts =
-      contacts_of(players_[0], bones.pose(), [&](const TriangleContact& c) { return !are_of(of, c.part_a, c.part_b); });
-  const Penetration found = players_[0].measure_parts(bones.pose(), contacts);
-  return std::max(0.0, double{found.measures.volume});
+  players_[0].set_pose(bones.pose());
+  const std::optional<Penetration> found = players_[0].measure_parts(of.part, of.other);
+  return found ? std::max(0.0, double{found->measures.volume}) : 0.0;
 }
 
 void FaultFinder::leave_out(std::set<std::pair<std::uint32_t, std::uint32_t>> pairs) {
@@ -115,12 +106,11 @@ std::vector<std::vector<Meeting>> FaultFinder::in_poses(const std::vector<TriedP
   std::vector<std::vector<Meeting>> found(poses.size());
   on_threads(players_.size(), poses.size(), [&](std::size_t t, std::size_t i) {
     const BonePose bones(animated_.asset(), clip_.pose_of(poses[i].frame, poses[i].turns).deformation);
-    const sc_pose pose = bones.pose();
-    const std::vector<TriangleContact> contacts = contacts_of(players_[t], pose, [&](const TriangleContact& c) {
-      return c.part_a == c.part_b || (moves[c.part_a] == 0 && moves[c.part_b] == 0) ||
-             left_out_.contains(std::minmax(c.part_a, c.part_b));
-    });
-    for (const Penetration& one : players_[t].measure_quickly(pose, contacts)) {
+    players_[t].set_pose(bones.pose());
+    const auto is_asked = [&](std::uint32_t a, std::uint32_t b) {
+      return a != b && (moves[a] != 0 || moves[b] != 0) && !left_out_.contains({a, b});
+    };
+    for (const Penetration& one : players_[t].measure_quickly(is_asked)) {
       found[i].push_back({static_cast<double>(poses[i].frame), one});
     }
   });

@@ -53,9 +53,6 @@ class FaultFinder {
   static std::vector<Meeting> found_in(const SeenFrames& seen, const Frames& frames);
   std::vector<Meeting> look(SkinPlayer& player, double frame, const Turns& turns) const;
   std::vector<Meeting> look_after(std::size_t thread, int frame, const Turns& turns);
-  using IsLeftOut = std::function<bool(const TriangleContact&)>;
-  static std::vector<TriangleContact> contacts_of(SkinPlayer& player, const sc_pose& pose,
-                                                  const IsLeftOut& is_left_out);
 
   const AnimatedAsset& animated_;
   const TurnedClip& clip_;

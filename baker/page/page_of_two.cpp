@@ -19,7 +19,6 @@
 #include "page/page_penetrations.h"
 #include "play/skin_player.h"
 #include "play/target.h"
-#include "play/two_bodies.h"
 #include "report/json_text.h"
 #include "report/report.h"
 #include "report/vec3_json.h"
@@ -212,21 +211,21 @@ class Contacts {
         first_part_(static_cast<std::uint32_t>(both.first_part())),
         first_triangle_(both.first_triangle()),
         mm_(mm_per_unit(first.asset())),
-        players_{SkinPlayer(first.asset(), choose_target("auto")), SkinPlayer(second.asset(), choose_target("auto"))},
-        between_(first.asset(), second.asset(), choose_target("auto")) {}
+        players_{SkinPlayer(first.asset(), choose_target("auto"), &second.asset()),
+                 SkinPlayer(second.asset(), choose_target("auto"))} {}
 
   void find(const std::array<std::vector<Vec3>, 2>& positions, bool is_next) {
     triangles.clear();
     measured_.clear();
     const std::array<std::vector<float>, 2> packed{pack(positions[0]), pack(positions[1])};
-    const std::array<sc_pose, 2> poses{pose_of(packed[0]), pose_of(packed[1])};
     for (const std::uint32_t i : {0U, 1U}) {
-      add(players_[i].find(poses[i]), i, i);
-      add(players_[i].measure(poses[i], is_next), i, i);
+      players_[i].set_pose(pose_of(packed[i]));
+      add(players_[i].triangles(), i, i);
+      add(players_[i].measure(is_next), i, i);
     }
     if (they_meet_) {
-      add(between_.find(poses[0], poses[1]), 0, 1);
-      add(between_.measure(poses[0], poses[1], is_next), 0, 1);
+      add(players_[0].triangles(players_[1]), 0, 1);
+      add(players_[0].measure(players_[1], is_next), 0, 1);
     }
     std::stable_sort(measured_.begin(), measured_.end(),
                      [](const Penetration& l, const Penetration& r) { return l.measures.depth > r.measures.depth; });
@@ -237,7 +236,7 @@ class Contacts {
 
  private:
   // Numbers of a and b are of those characters.
-  void add(const std::vector<TriangleContact>& contacts, std::uint32_t a, std::uint32_t b) {
+  void add(Span<const TriangleContact> contacts, std::uint32_t a, std::uint32_t b) {
     for (const TriangleContact& c : contacts) {
       triangles.push_back({c.triangle_a + a * first_triangle_, c.triangle_b + b * first_triangle_});
     }
@@ -254,7 +253,6 @@ class Contacts {
   std::uint32_t first_part_, first_triangle_;
   double mm_;
   std::array<SkinPlayer, 2> players_;
-  TwoBodies between_;
   std::vector<Penetration> measured_;
 };
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "depth/penetration_jobs.h"
 #include "page/base64.h"
-#include "spherechain/penetrations.h"
 
 namespace spherechain::baker {
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "play/asset_file.h"
 
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "import/import.h"
 #include "mesh/error.h"
-#include "spherechain/skin_contacts.h"
+#include "skin/contact_jobs.h"
 
 namespace spherechain::baker {
 
@@ -32,16 +31,14 @@ void check_runtime(const Status& status) {
 }
 
 OpenAsset::OpenAsset(std::string_view bytes, const std::string& name)
-    : bytes_(bytes.size() / sizeof(std::uint64_t) + 1) {
-  std::memcpy(bytes_.data(), bytes.data(), bytes.size());
-  char message[256] = "";
-  const Status status = sc_asset_open(&asset_, SC_ABI_VERSION, bytes_.data(), bytes.size(), message, sizeof(message));
-  if (status != SC_OK) {
-    throw Error(ExitCode::kFile, name + ": " + sc_code_text(status.code) + ": " + message + " (bake it again)");
+    : model_(bytes.data(), bytes.size(), nullptr, 0, SC_LAYOUT_UNSET) {
+  if (!model_) {
+    throw Error(ExitCode::kFile,
+                name + ": " + code_text(model_.status()) + ": " + model_.message() + " (bake it again)");
   }
-  table_.resize(sc_skin_table_words(&asset_));
+  table_.resize(skin_table_words(handle()));
   if (!table_.empty()) {
-    check_runtime(sc_prepare_skin(&asset_, table_.data(), table_.size()));
+    check_runtime(prepare_skin(handle(), table_.data(), table_.size()));
     check_runtime(read_skin_table(view(), table_.data(), surface_));
   }
   std::size_t first = 0;

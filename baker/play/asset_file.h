@@ -6,15 +6,16 @@
 #include <string_view>
 #include <vector>
 
+#include "asset/asset_view.h"
 #include "skin/skin_table.h"
-#include "spherechain/asset.h"
+#include "spherechain/model.h"
 
 namespace spherechain::baker {
 
 // Whole contents, of a file or a pipe; throws Error(kFile).
 std::string read_file(const std::string& path);
 
-// An asset, the bytes it views, and its skin expanded. Moves, does not copy.
+// A model and its skin expanded. Moves, does not copy.
 class OpenAsset {
  public:
   // Throws Error(kFile) that says what is wrong with the bytes; `name` is for the message.
@@ -23,10 +24,11 @@ class OpenAsset {
   OpenAsset& operator=(OpenAsset&&) = default;
 
   // The runtime's, and what it holds.
-  const sc_asset* handle() const { return &asset_; }
-  operator const sc_asset&() const { return asset_; }
-  const AssetView* operator->() const { return &view_of(asset_); }
-  const AssetView& view() const { return view_of(asset_); }
+  const Model& model() const { return model_; }
+  const sc_asset* handle() const { return &model_.asset(); }
+  operator const sc_asset&() const { return model_.asset(); }
+  const AssetView* operator->() const { return &view(); }
+  const AssetView& view() const { return view_of(model_.asset()); }
 
   const std::uint64_t* skin_table() const { return table_.data(); }
   const Surface& surface() const { return surface_; }
@@ -34,8 +36,7 @@ class OpenAsset {
   Span<const std::uint32_t> triangles_of(std::size_t sphere) const;
 
  private:
-  std::vector<std::uint64_t> bytes_;  // aligned as the runtime wants
-  sc_asset asset_;
+  Model model_;
   std::vector<std::uint64_t> table_;
   Surface surface_;
   std::vector<std::size_t> first_triangles_;

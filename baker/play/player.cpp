@@ -78,10 +78,14 @@ Detection Player::take(std::vector<Sphere> spheres, const std::vector<Pair>& pai
 
 Player::TriangleDetection Player::detect_triangles(const sc_pose& pose, bool is_next) {
   TriangleDetection out{};
-  out.us = median_us([&] { skin_.ask(pose); });
-  for (const TriangleContact& contact : skin_.find(pose)) out.pairs.push_back({contact.triangle_a, contact.triangle_b});
+  out.us = median_us([&] {
+    skin_.set_pose(pose);
+    skin_.count_contacts();
+  });
+  for (const TriangleContact& contact : skin_.triangles())
+    out.pairs.push_back({contact.triangle_a, contact.triangle_b});
   const auto start = Clock::now();
-  out.penetrations = skin_.measure(pose, is_next);
+  out.penetrations = skin_.measure(is_next);
   out.measure_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
   std::stable_sort(out.penetrations.begin(), out.penetrations.end(),
                    [](const Penetration& l, const Penetration& r) { return l.measures.depth > r.measures.depth; });

@@ -6,10 +6,10 @@
 #include <unordered_map>
 #include <vector>
 
+#include "pairs/detect_job.h"
 #include "play/asset_file.h"
 #include "play/skin_player.h"
-#include "spherechain/detect.h"
-#include "spherechain/refit.h"
+#include "refit/refit_job.h"
 
 namespace spherechain::baker {
 

@@ -41,74 +41,93 @@ SkinPose::SkinPose(const AnimatedAsset& animated, const Deformation& deformation
   }
 }
 
-SkinPlayer::SkinPlayer(const OpenAsset& asset, Target target)
-    : asset_(asset), target_(target), scratch_(sc_skin_scratch_words(asset.handle())) {}
-
-SkinContactJob SkinPlayer::job(const sc_pose& pose) {
-  SkinContactJob job;
-  job.asset = asset_.handle();
-  job.pose = pose;
-  job.target = target_;
-  job.skin_table = asset_.skin_table();
-  job.scratch = scratch_.data();
-  job.scratch_words = scratch_.size();
-  return job;
+SkinPlayer::SkinPlayer(const OpenAsset& asset, Target target, const OpenAsset* other) : asset_(asset), target_(target) {
+  const std::size_t parts = asset->part_count(), others = other == nullptr ? parts : (*other)->part_count();
+  def_.max_penetrations = parts * std::max(parts + 1, others);  // all that there can be
+  def_.largest_other = other == nullptr ? nullptr : other->model().handle();
+  body_ = Body(asset.model(), def_);
+  check_runtime(body_.status());
 }
 
-void SkinPlayer::ask(const sc_pose& pose) { check_runtime(job(pose).run()); }
-
-const std::vector<TriangleContact>& SkinPlayer::find(const sc_pose& pose) {
-  SkinContactJob job = this->job(pose);
-  list_triangles(job, contacts_);
-  part_count_ = job.part_count;
-  return contacts_;
+void SkinPlayer::set_pose(const sc_pose& pose) {
+  pose_ = pose;
+  check_runtime(body_.set_pose(pose));
 }
 
-PenetrationJob SkinPlayer::measure_job(const sc_pose& pose, const std::vector<TriangleContact>& contacts) {
-  PenetrationJob job;
-  job.asset = asset_.handle();
-  job.pose = pose;
-  job.target = target_;
-  job.skin_table = asset_.skin_table();
-  job.contacts = contacts.data();
-  job.contact_count = contacts.size();
-  measure_scratch_.resize(std::max(measure_scratch_.size(), sc_penetration_scratch_words(job.asset, contacts.size())));
-  job.scratch = measure_scratch_.data();
-  job.scratch_words = measure_scratch_.size();
-  return job;
-}
-
-const std::vector<Penetration>& SkinPlayer::run(PenetrationJob& job) {
-  penetrations_.resize(part_count_);
-  job.penetrations = penetrations_.data();
-  job.penetration_capacity = penetrations_.size();
-  check_runtime(job.run());
-  penetrations_.resize(job.penetration_count);
-  return penetrations_;
-}
-
-const std::vector<Penetration>& SkinPlayer::measure(const sc_pose& pose, bool is_next) {
-  std::swap(penetrations_, before_);
-  PenetrationJob job = measure_job(pose, contacts_);
-  job.previous = is_next ? before_.data() : nullptr;
-  job.previous_count = is_next ? before_.size() : 0;
-  return run(job);
-}
-
-const std::vector<Penetration>& SkinPlayer::measure_quickly(const sc_pose& pose,
-                                                            const std::vector<TriangleContact>& contacts) {
-  PenetrationJob job = measure_job(pose, contacts);
-  job.quick = 1;
-  return run(job);
-}
-
-Penetration SkinPlayer::measure_parts(const sc_pose& pose, const std::vector<TriangleContact>& contacts) {
-  PenetrationJob job = measure_job(pose, contacts);
-  Penetration out{};
-  job.penetrations = &out;
-  job.penetration_capacity = 1;
-  check_runtime(job.run());
+Query SkinPlayer::query(Detail detail) const {
+  Query out;
+  out.detail = detail;
+  out.target = target_;
+  out.classes = ~0U;
   return out;
+}
+
+std::size_t SkinPlayer::count_contacts() {
+  const Contacts found = body_.contacts(query(SC_DETAIL_QUICK));
+  check_runtime(body_.status());
+  return found.part_count;
+}
+
+Span<const TriangleContact> SkinPlayer::triangles(const SkinPlayer* other, Scope scope) {
+  Query asked = query(SC_DETAIL_FULL);
+  asked.scope = scope;
+  for (;;) {
+    const Contacts found = other == nullptr ? body_.contacts(asked) : body_.contacts(other->body_, asked);
+    check_runtime(body_.status());
+    if (found.triangle_count == found.triangle_total) return {found.triangles, found.triangle_count};
+    def_.max_triangles = 2 * found.triangle_total;
+    body_ = Body(asset_.model(), def_);
+    check_runtime(body_.status());
+    set_pose(pose_);
+  }
+}
+
+const std::vector<Penetration>& SkinPlayer::find(const SkinPlayer* other, Query query) {
+  const Penetrations found = other == nullptr ? body_.penetrations(query) : body_.penetrations(other->body_, query);
+  check_runtime(body_.status());
+  found_.assign(found.begin(), found.end());
+  std::sort(found_.begin(), found_.end(), [](const Penetration& l, const Penetration& r) {
+    return std::pair(std::minmax(l.part, l.other), l.part) < std::pair(std::minmax(r.part, r.other), r.part);
+  });
+  return found_;
+}
+
+const std::vector<Penetration>& SkinPlayer::measure(const SkinPlayer* other, bool is_next) {
+  std::vector<Penetration>& before = other == nullptr ? before_ : before_with_;
+  Query asked = query(SC_DETAIL_FULL);
+  asked.previous = is_next ? before.data() : nullptr;
+  asked.previous_count = is_next ? before.size() : 0;
+  find(other, asked);
+  before = found_;
+  return found_;
+}
+
+std::vector<std::uint64_t> SkinPlayer::part_pairs(const IsAsked& is_asked) const {
+  const auto parts = static_cast<std::uint32_t>(asset_->part_count());
+  std::vector<std::uint64_t> out(std::size_t{parts} * parts / 64 + 1);
+  for (std::uint32_t a = 0; a < parts; ++a) {
+    for (std::uint32_t b = a; b < parts; ++b) {
+      const std::size_t bit = std::size_t{a} * parts + b;
+      if (is_asked(a, b)) out[bit / 64] |= std::uint64_t{1} << bit % 64;
+    }
+  }
+  return out;
+}
+
+const std::vector<Penetration>& SkinPlayer::measure_quickly(const IsAsked& is_asked) {
+  Query asked = query(SC_DETAIL_QUICK);
+  const std::vector<std::uint64_t> pairs = is_asked ? part_pairs(is_asked) : std::vector<std::uint64_t>();
+  asked.part_pairs = is_asked ? pairs.data() : nullptr;
+  return find(nullptr, asked);
+}
+
+std::optional<Penetration> SkinPlayer::measure_parts(std::uint32_t part_a, std::uint32_t part_b) {
+  Query asked = query(SC_DETAIL_FULL);
+  const std::vector<std::uint64_t> pairs =
+      part_pairs([&](std::uint32_t a, std::uint32_t b) { return std::minmax(a, b) == std::minmax(part_a, part_b); });
+  asked.part_pairs = pairs.data();
+  const std::vector<Penetration>& found = find(nullptr, asked);
+  return found.empty() ? std::nullopt : std::optional(found[0]);
 }
 
 }  // namespace spherechain::baker

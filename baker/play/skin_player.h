@@ -2,13 +2,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include "motion/motion.h"
 #include "play/asset_file.h"
-#include "spherechain/penetrations.h"
-#include "spherechain/skin_contacts.h"
+#include "spherechain/body.h"
 
 namespace spherechain::baker {
 
@@ -47,50 +48,44 @@ class SkinPose {
   std::vector<float> vertices_;
 };
 
-// Runs a job on triangles that intersect until there is room for all of them.
-template <typename Job>
-void list_triangles(Job& job, std::vector<TriangleContact>& contacts) {
-  contacts.resize(std::max<std::size_t>(contacts.capacity(), 256));
-  for (bool fits = false; !fits;) {
-    job.triangles = contacts.data();
-    job.triangle_capacity = contacts.size();
-    const Status status = job.run();
-    if (status.code != SC_OVERFLOW) check_runtime(status);
-    fits = job.triangle_count <= contacts.size();
-    contacts.resize(job.triangle_count);
-  }
-}
-
-// The runtime's exact contacts of one pose after another, and what they measure. The asset must have clusters.
+// A game's body with room for all that it finds. The asset must have clusters, and outlive it.
 class SkinPlayer {
  public:
-  SkinPlayer(const OpenAsset& asset, Target target);
+  // `other`: the largest asset that it will meet; null: none is larger than its own.
+  SkinPlayer(const OpenAsset& asset, Target target, const OpenAsset* other = nullptr);
 
-  // Finds which body parts meet, and lists nothing: what a game asks.
-  void ask(const sc_pose& pose);
-  // The triangles that intersect. Both lists hold until the next call.
-  const std::vector<TriangleContact>& find(const sc_pose& pose);
-  // What find() found in that pose, sorted by body parts. `is_next`: the pose follows the last one measured, and
-  // directions may follow that one's.
-  const std::vector<Penetration>& measure(const sc_pose& pose, bool is_next);
-  // The same by the quick form: along one direction, as games do.
-  const std::vector<Penetration>& measure_quickly(const sc_pose& pose) { return measure_quickly(pose, contacts_); }
-  // Of some pairs of parts: `contacts` are all of theirs.
-  const std::vector<Penetration>& measure_quickly(const sc_pose& pose, const std::vector<TriangleContact>& contacts);
-  // Two body parts alone, in full, whatever came before. `contacts` are all of theirs in that pose.
-  Penetration measure_parts(const sc_pose& pose, const std::vector<TriangleContact>& contacts);
+  // The pose that all questions below are about. Its memory must stay as it is until the next.
+  void set_pose(const sc_pose& pose);
+
+  // The number of pairs of body parts in contact: what a game asks.
+  std::size_t count_contacts();
+  // The triangles that intersect, and those that intersect another body's. A list holds until the next question.
+  Span<const TriangleContact> triangles(Scope scope = SC_SCOPE_APART) { return triangles(nullptr, scope); }
+  Span<const TriangleContact> triangles(const SkinPlayer& other) { return triangles(&other, SC_SCOPE_APART); }
+
+  // Penetrations of all classes in full, sorted by body parts. `is_next`: the pose follows the last one measured so,
+  // and directions may follow that one's. A list holds until the next question.
+  const std::vector<Penetration>& measure(bool is_next) { return measure(nullptr, is_next); }
+  const std::vector<Penetration>& measure(const SkinPlayer& other, bool is_next) { return measure(&other, is_next); }
+  // The same by the quick form, as games do; of those pairs of body parts alone that `is_asked` says.
+  using IsAsked = std::function<bool(std::uint32_t part_a, std::uint32_t part_b)>;
+  const std::vector<Penetration>& measure_quickly(const IsAsked& is_asked = {});
+  // Two body parts alone, in full, whatever came before; nothing where they do not intersect.
+  std::optional<Penetration> measure_parts(std::uint32_t part_a, std::uint32_t part_b);
 
  private:
-  SkinContactJob job(const sc_pose& pose);
-  PenetrationJob measure_job(const sc_pose& pose, const std::vector<TriangleContact>& contacts);
-  const std::vector<Penetration>& run(PenetrationJob& job);
+  Query query(Detail detail) const;
+  Span<const TriangleContact> triangles(const SkinPlayer* other, Scope scope);
+  const std::vector<Penetration>& measure(const SkinPlayer* other, bool is_next);
+  const std::vector<Penetration>& find(const SkinPlayer* other, Query query);
+  std::vector<std::uint64_t> part_pairs(const IsAsked& is_asked) const;
 
   const OpenAsset& asset_;
   Target target_;
-  std::vector<std::uint64_t> scratch_, measure_scratch_;
-  std::vector<TriangleContact> contacts_;
-  std::vector<Penetration> penetrations_, before_;
-  std::size_t part_count_ = 0;  // pairs of parts in contact
+  BodyDef def_;
+  Body body_;
+  sc_pose pose_{};
+  std::vector<Penetration> found_, before_, before_with_;  // before: of the last measure(), alone and with another
 };
 
 }  // namespace spherechain::baker

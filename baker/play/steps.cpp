@@ -150,7 +150,7 @@ const std::vector<StepContact>& StepPlayer::find(const Deformation& from, const 
     job.a.parents = parents_.data();
     job.a.joint_of_bone = joint_of_bone_.data();
   }
-  scratch_.resize(std::max(scratch_.size(), sc_step_scratch_words(&job.a, nullptr)));
+  scratch_.resize(std::max(scratch_.size(), step_scratch_words(&job.a, nullptr)));
   job.scratch = scratch_.data();
   job.scratch_words = scratch_.size();
   contacts_.resize(std::max<std::size_t>(contacts_.capacity(), 64));
@@ -177,8 +177,8 @@ double deepest_share(const AnimatedAsset& animated, int frame, const StepContact
     const Deformation deformation =
         animated.deformation(frame_between(animated.frame_at(frame), animated.frame_at(frame + 1), at));
     const SkinPose skin(animated, deformation);
-    player.find(skin.pose());
-    for (const Penetration& found : player.measure_quickly(skin.pose())) {
+    player.set_pose(skin.pose());
+    for (const Penetration& found : player.measure_quickly()) {
       if (are_of(found, contact.part_a, contact.part_b) && double{found.measures.depth} > most) {
         most = double{found.measures.depth};
         share = at;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "play/play.h"
-#include "spherechain/steps.h"
+#include "step/step_job.h"
 
 namespace spherechain::baker {
 

@@ -5,28 +5,15 @@
 
 #include "play/skin_player.h"
 #include "skin/skin_inputs.h"
-#include "spherechain/skin_contacts.h"
 
 namespace spherechain::baker {
 namespace {
 
-std::vector<Pair> run(const OpenAsset& asset, const sc_pose& pose, Scope scope, Target target) {
-  std::vector<std::uint64_t> scratch(sc_skin_scratch_words(asset.handle()));
-  SkinContactJob job;
-  job.asset = asset.handle();
-  job.pose = pose;
-  job.scope = scope;
-  job.target = target;
-  job.skin_table = asset.skin_table();
-  job.scratch = scratch.data();
-  job.scratch_words = scratch.size();
-  check_runtime(job.run());  // to count
-  std::vector<TriangleContact> contacts(job.triangle_count);
-  job.triangles = contacts.data();
-  job.triangle_capacity = contacts.size();
-  check_runtime(job.run());
+std::vector<Pair> run(SkinPlayer& player, Scope scope) {
   std::vector<Pair> pairs;
-  for (const TriangleContact& contact : contacts) pairs.push_back({contact.triangle_a, contact.triangle_b});
+  for (const TriangleContact& contact : player.triangles(scope)) {
+    pairs.push_back({contact.triangle_a, contact.triangle_b});
+  }
   return pairs;
 }
 
@@ -48,10 +35,9 @@ void follow(const Surface& surface, std::vector<float>& positions, const std::ve
 
 std::vector<Pair> find_contacts(const OpenAsset& asset, const std::vector<float>& positions, Scope scope,
                                 Target target) {
-  sc_pose pose;
-  pose.vertices = positions.data();
-  pose.vertex_count = positions.size() / 3;
-  return run(asset, pose, scope, target);
+  SkinPlayer player(asset, target);
+  player.set_pose(pose_of(positions));
+  return run(player, scope);
 }
 
 ContactsFromBones find_contacts_from_bones(const OpenAsset& asset, const Character& character,
@@ -61,8 +47,10 @@ ContactsFromBones find_contacts_from_bones(const OpenAsset& asset, const Charact
   ContactsFromBones out{pack(character.source_positions), {}, {}};
   skin_surface(asset.surface(), pose, target, out.positions.data(), 3);
   follow(asset.surface(), out.positions, character.source_triangles);
-  out.pairs = run(asset, pose, SC_SCOPE_APART, target);
-  out.neighbours = run(asset, pose, SC_SCOPE_NEIGHBOURS, target);
+  SkinPlayer player(asset, target);
+  player.set_pose(pose);
+  out.pairs = run(player, SC_SCOPE_APART);
+  out.neighbours = run(player, SC_SCOPE_NEIGHBOURS);
   return out;
 }
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "spherechain/penetrations.h"
+#include "depth/penetration_jobs.h"
 #include "truth/truth.h"
 
 namespace spherechain::baker {

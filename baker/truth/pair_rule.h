@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "pairs/detect_job.h"
 #include "play/asset_file.h"
-#include "spherechain/detect.h"
 
 namespace spherechain::baker {
 

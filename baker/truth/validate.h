@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "pairs/detect_job.h"
 #include "play/play.h"
 #include "play/player.h"
-#include "spherechain/detect.h"
 #include "truth/contacts.h"
 #include "truth/curve.h"
 #include "truth/groups.h"

@@ -2,48 +2,44 @@
 #include "write/rest_contacts.h"
 
 #include "mesh/error.h"
-#include "spherechain/skin_contacts.h"
+#include "spherechain/body.h"
 
 namespace spherechain::baker {
 
 std::vector<Pair> find_rest_contacts(const std::vector<std::uint8_t>& bytes, const std::vector<float>& rest) {
-  sc_asset asset;
-  if (sc_asset_open(&asset, SC_ABI_VERSION, bytes.data(), bytes.size(), nullptr, 0) != SC_OK) {
-    return {};  // said where it is opened next
-  }
-  std::vector<std::uint64_t> table(sc_skin_table_words(&asset)), scratch(sc_skin_scratch_words(&asset)),
-      nothing_ignored(sc_pair_words(&asset), 0);
-  if (table.empty()) return {};
-  sc_filter filter;
+  const Model model(bytes.data(), bytes.size(), nullptr, 0, SC_LAYOUT_UNSET);
+  if (!model) return {};  // the next who opens it says what is wrong
+  std::vector<std::uint64_t> nothing_ignored(sc_pair_words(&model.asset()), 0);
+  Filter filter;
   filter.ignored = nothing_ignored.data();
   filter.ignored_words = nothing_ignored.size();
-  SkinContactJob job;
-  job.asset = &asset;
-  job.pose.vertices = rest.data();
-  job.pose.vertex_count = rest.size() / 3;
-  job.filter = &filter;
-  job.scope = SC_SCOPE_ALL;
-  job.skin_table = table.data();
-  job.scratch = scratch.data();
-  job.scratch_words = scratch.size();
-  std::vector<TriangleContact> contacts(1024);
-  const auto find = [&] {
-    job.triangles = contacts.data();
-    job.triangle_capacity = contacts.size();
-    const Status status = job.run();
-    contacts.resize(job.triangle_count);
-    return status;
-  };
-  Status status = sc_prepare_skin(&asset, table.data(), table.size());
-  if (status == SC_OK) status = find();
-  if (status == SC_OVERFLOW) status = find();  // now all fit
-  if (status != SC_OK) {
-    throw Error(ExitCode::kInternal,
-                std::string("rest contacts: ") + sc_field_name(status.field) + ": " + sc_code_text(status.code));
+  Query query;
+  query.scope = SC_SCOPE_ALL;
+  query.detail = SC_DETAIL_FULL;
+  query.filter = &filter;
+  Pose pose;
+  pose.vertices = rest.data();
+  pose.vertex_count = rest.size() / 3;
+  BodyDef def;
+  for (;;) {
+    Body body(model, def);
+    if (body) body.set_pose(pose);
+    const Contacts found = body.status() == SC_OK ? body.contacts(query) : Contacts{};
+    if (body.status() == SC_NOT_IN_ASSET) return {};  // it has no triangles
+    if (body.status() != SC_OK) {
+      throw Error(ExitCode::kInternal,
+                  std::string("rest contacts: ") + field_name(body.status()) + ": " + code_text(body.status()));
+    }
+    if (found.triangle_count < found.triangle_total) {
+      def.max_triangles = found.triangle_total;
+      continue;
+    }
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < found.triangle_count; ++i) {
+      pairs.push_back({found.triangles[i].triangle_a, found.triangles[i].triangle_b});
+    }
+    return pairs;
   }
-  std::vector<Pair> pairs;
-  for (const TriangleContact& contact : contacts) pairs.push_back({contact.triangle_a, contact.triangle_b});
-  return pairs;
 }
 
 }  // namespace spherechain::baker

@@ -144,6 +144,8 @@ namespace Spherechain
         public Filter Filter;
         /// <summary>Model.PartSet(): of two bodies, parts that meet nothing: a hand that holds the other.</summary>
         public ulong[] IgnoredParts, IgnoredPartsOfOther;
+        /// <summary>Model.PairSet(): of contacts and penetrations, the pairs of parts that are asked about; null: all.</summary>
+        public ulong[] PartPairs;
         /// <summary>What is a fault; null: Native.sc_default_rule().</summary>
         public Rule? Rule;
         /// <summary>Bit k: penetrations of class k are listed; 0: faults alone.</summary>
@@ -313,8 +315,10 @@ namespace Spherechain
         void Ask(Question question, Body other, ref Query query, Results<Penetration> list = null, Ground ground = default(Ground))
         {
             if (other == this) throw new SpherechainException(Code.BadValue, Field.Bodies, "a body meets another one");
-            CheckParts(query.IgnoredParts, this);
-            CheckParts(query.IgnoredPartsOfOther, other);
+            CheckBits(query.IgnoredParts, Model.PartCount, Field.IgnoredParts, "a bit for each part: Model.PartSet()");
+            int others = (other ?? this).Model.PartCount;
+            CheckBits(query.IgnoredPartsOfOther, other == null ? 0 : others, Field.IgnoredParts, "a bit for each part: Model.PartSet()");
+            CheckBits(query.PartPairs, Model.PartCount * others, Field.Query, "a bit for each two parts: Model.PairSet()");
             Enter(false);
             try
             {
@@ -328,7 +332,7 @@ namespace Spherechain
         void AskNative(Question question, IntPtr other, ref Query query, Results<Penetration> list, Ground ground)
         {
             fixed (ulong* words = query.Filter == null ? null : query.Filter.Words)
-            fixed (ulong* ignored = query.IgnoredParts, ignoredOfOther = query.IgnoredPartsOfOther)
+            fixed (ulong* ignored = query.IgnoredParts, ignoredOfOther = query.IgnoredPartsOfOther, pairs = query.PartPairs)
             fixed (Penetration* previous = query.Previous == null ? null : query.Previous.Items)
             {
                 Native.Filter filter = query.Filter == null ? default(Native.Filter) : query.Filter.View(words);
@@ -339,6 +343,7 @@ namespace Spherechain
                 q.Filter = query.Filter == null ? null : &filter;
                 q.IgnoredParts = ignored;
                 q.IgnoredPartsOfOther = ignoredOfOther;
+                q.PartPairs = pairs;
                 q.Rule = query.Rule.HasValue ? &rule : null;
                 q.Classes = query.Classes;
                 q.Limit = Text.Size(query.Limit);
@@ -384,10 +389,9 @@ namespace Spherechain
             }
         }
 
-        static void CheckParts(ulong[] words, Body body)
+        static void CheckBits(ulong[] words, int bits, Field field, string remedy)
         {
-            if (words == null || body == null || words.Length >= (body.Model.PartCount + 63) / 64) return;
-            throw new SpherechainException(Code.TooSmall, Field.IgnoredParts, "a bit for each part: Model.PartSet()");
+            if (words != null && words.Length < (bits + 63) / 64) throw new SpherechainException(Code.TooSmall, field, remedy);
         }
 
         static void Check(Status status)

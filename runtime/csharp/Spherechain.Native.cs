@@ -472,37 +472,6 @@ namespace Spherechain
             public UIntPtr VertexStride;
         }
 
-        public unsafe struct SceneBody  // sc_scene_body
-        {
-            /// <summary>refitted; or null: the box counts</summary>
-            public Sphere* Spheres;
-            public UIntPtr SphereCount;
-            /// <summary>without spheres: a box around the body, as sc_bound_body() has it; finite</summary>
-            public Vec3 Low, High;
-            public JointTransform* Transform;
-            /// <summary>below 32</summary>
-            public uint Layer;
-        }
-
-        public unsafe struct SceneJob  // sc_scene_job
-        {
-            public SceneBody* Bodies;
-            /// <summary>at most 2^24</summary>
-            public UIntPtr BodyCount;
-            public uint* Layers;
-            /// <summary>bodies that never meet: a rider and his horse; sorted, each once; null: none</summary>
-            public Pair* Ignored;
-            public UIntPtr IgnoredCount;
-            /// <summary>sc_scene_scratch_words() words; nothing is kept there between runs</summary>
-            public ulong* Scratch;
-            public UIntPtr ScratchWords;
-            /// <summary>out: of places in `bodies`; sorted, each once; null: count only</summary>
-            public Pair* Pairs;
-            public UIntPtr PairCapacity;
-            /// <summary>out: how many there are, also where `pairs` is too small</summary>
-            public UIntPtr PairCount;
-        }
-
         public unsafe struct Allocator  // sc_allocator
         {
             public IntPtr Allocate;
@@ -543,6 +512,7 @@ namespace Spherechain
             public Filter* Filter;
             public ulong* IgnoredParts;
             public ulong* IgnoredPartsOfOther;
+            public ulong* PartPairs;
             /// <summary>null: sc_default_rule()</summary>
             public Rule* Rule;
             /// <summary>bit k: penetrations of class k are listed; 0: faults alone</summary>
@@ -631,6 +601,37 @@ namespace Spherechain
             public UIntPtr PairCount;
         }
 
+        public unsafe struct SceneBody  // sc_scene_body
+        {
+            /// <summary>refitted; or null: the box counts</summary>
+            public Sphere* Spheres;
+            public UIntPtr SphereCount;
+            /// <summary>without spheres: a box around the body, as sc_get_bounds() has it; finite</summary>
+            public Vec3 Low, High;
+            public JointTransform* Transform;
+            /// <summary>below 32</summary>
+            public uint Layer;
+        }
+
+        public unsafe struct SceneJob  // sc_scene_job
+        {
+            public SceneBody* Bodies;
+            /// <summary>at most 2^24</summary>
+            public UIntPtr BodyCount;
+            public uint* Layers;
+            /// <summary>bodies that never meet: a rider and his horse; sorted, each once; null: none</summary>
+            public Pair* Ignored;
+            public UIntPtr IgnoredCount;
+            /// <summary>sc_scene_scratch_words() words; nothing is kept there between runs</summary>
+            public ulong* Scratch;
+            public UIntPtr ScratchWords;
+            /// <summary>out: of places in `bodies`; sorted, each once; null: count only</summary>
+            public Pair* Pairs;
+            public UIntPtr PairCapacity;
+            /// <summary>out: how many there are, also where `pairs` is too small</summary>
+            public UIntPtr PairCount;
+        }
+
         [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_code_text(Code code);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_field_name(Field field);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_target_name(Target target);
@@ -651,14 +652,13 @@ namespace Spherechain
         [DllImport(Library, CallingConvention = Cdecl)] public static extern PenetrationClass sc_classify(Rule* rule, Measures* measures);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_penetration_class_name(PenetrationClass kind);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_pair_words(Asset* asset);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_part_words(Asset* asset);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_reset_filter(Asset* asset, Filter* filter);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_ignore_pair(Asset* asset, Filter* filter, uint a, uint b, int ignored);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_ignore_regions(Asset* asset, Filter* filter, UIntPtr region, UIntPtr other, int ignored);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_bind_joints(Asset* asset, Bone* joints, UIntPtr joint_count, MatrixLayout inverse_bind_layout, uint* joint_of_bone, UIntPtr capacity, byte* message, UIntPtr message_size);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_gather_bones(Asset* asset, uint* joint_of_bone, Pose* palette, float* bones);
-        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_meetings(SceneJob* job);
-        [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_scene_scratch_words(UIntPtr body_count);
-        [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_part_words(Asset* asset);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_place_bones(JointTransform* transform, float* bones, UIntPtr bone_count);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_create_model(uint abi, ModelDef* def, IntPtr* model, byte* message, UIntPtr message_size);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern void sc_destroy_model(IntPtr model);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Asset* sc_get_asset(IntPtr model);
@@ -676,5 +676,7 @@ namespace Spherechain
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_get_bounds(IntPtr body, Vec3* low, Vec3* high);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_detect_crowd(CrowdJob* job);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_crowd_scratch_words(Asset* asset, UIntPtr task_count);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_meetings(SceneJob* job);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_scene_scratch_words(UIntPtr body_count);
     }
 }

@@ -225,6 +225,19 @@ namespace Spherechain
             return words;
         }
 
+        /// <summary>For Query.PartPairs: a bit for each of these pairs, of a part of this model and one of `other`, which may be this.</summary>
+        public ulong[] PairSet(Model other, params Pair[] pairs)
+        {
+            ulong[] words = new ulong[(PartCount * other.PartCount + 63) / 64];
+            foreach (Pair pair in pairs)
+            {
+                Index((int)pair.B, other.PartCount);
+                int bit = (int)Index((int)pair.A, PartCount).ToUInt64() * other.PartCount + (int)pair.B;
+                words[bit / 64] |= 1ul << (bit % 64);
+            }
+            return words;
+        }
+
         internal Native.Asset* Asset { get { return Native.sc_get_asset(Handle); } }
 
         Native.Part Part(int part) { return Native.sc_asset_part(Asset, Index(part, PartCount)); }

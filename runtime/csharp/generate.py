@@ -14,9 +14,6 @@ import re
 import subprocess
 import sys
 
-# These structs and functions are left out of C#, and functions that take such a struct: Model and Body stand for them.
-UNUSED = re.compile(r"""sc_(?!crowd_|scene_)\w+_job | sc_job_body | sc_motion | sc_blend | sc_place_bones | sc_check_rest_pose
-    | sc_detect_table_words | sc_prepare_\w+ | sc_(?!crowd_|scene_)\w+_scratch_words | sc_skin_table_words""", re.X)
 # Constants that C# cannot have, and why.
 LEFT_OUT = {
     "SC_WHOLE_SOURCE": "its width depends on the machine: pass new UIntPtr(UIntPtr.Size == 8 ? ulong.MaxValue : uint.MaxValue)",
@@ -67,7 +64,6 @@ class Header:
         marks = len(re.findall(r"^SPHERECHAIN_API ", self.raw, re.M))
         if marks != len(self.functions):
             fail("the headers mark %d functions, %d were read" % (marks, len(self.functions)))
-        self.leave_out()
         for line in sorted(preprocess(headers, "-dM").split("\n")):
             define = re.match(r"#define (SC_\w+) (.+)", line)
             if not define or define.group(1) in ("SC_ZERO", "SC_NOEXCEPT") or define.group(1) in LEFT_OUT:
@@ -75,13 +71,6 @@ class Header:
             if not re.fullmatch(r"\d+|0x[0-9A-Fa-f]+u", define.group(2)):
                 fail("what is %s?" % line)
             self.constants[define.group(1)] = define.group(2)
-
-    def leave_out(self):
-        unused = {type_name(name) for name in list(self.structs) + list(self.enums) if UNUSED.fullmatch(name)}
-        self.enums = {name: of for name, of in self.enums.items() if type_name(name) not in unused}
-        self.structs = {name: of for name, of in self.structs.items() if type_name(name) not in unused}
-        self.functions = [f for f in self.functions
-                          if not UNUSED.fullmatch(f[0]) and not any(kind.rstrip("*") in unused for _, kind in f[2])]
 
     def parse(self, text):
         # After the preprocessor SC_ENUM is `typedef int32_t NAME; enum {...};`.

@@ -81,30 +81,19 @@ std::vector<CrowdPair> find_alarms(const Asset& asset, const std::vector<float>&
   return pairs;
 }
 
-// Of the alarmed pairs of spheres, those whose skins really intersect: character by character.
-std::size_t confirm(const Asset& asset, const std::vector<float>& bones, const std::vector<CrowdPair>& alarms,
+// The alarmed characters whose skins really intersect, and in how many pairs of body parts. One body serves all.
+std::size_t confirm(const Model& model, const std::vector<float>& bones, const std::vector<CrowdPair>& alarms,
                     std::size_t& characters) {
-  const std::size_t bone_count = sc_asset_get_info(&asset).bone_count;
-  std::vector<std::uint64_t> table(sc_skin_table_words(&asset)), scratch(sc_skin_scratch_words(&asset));
-  check(sc_prepare_skin(&asset, table.data(), table.size()));
-  SkinContactJob job;
-  job.asset = &asset;
-  job.skin_table = table.data();
-  job.scratch = scratch.data();
-  job.scratch_words = scratch.size();
-  job.spheres_only = 1;
+  const std::size_t bone_count = model.info().bone_count;
+  Body body(model);
   std::size_t confirmed = 0;
-  std::vector<Pair> candidates;
-  for (auto first = alarms.begin(); first != alarms.end();) {
-    const std::uint32_t instance = first->instance;
-    candidates.clear();
-    for (; first != alarms.end() && first->instance == instance; ++first) candidates.push_back(first->pair);
-    job.pose = {&bones[instance * 12 * bone_count], bone_count, SC_ROWS_3X4};
-    job.candidates = candidates.data();
-    job.candidate_count = candidates.size();
-    check(job.run());
-    confirmed += job.sphere_count;
-    characters += job.sphere_count > 0 ? 1 : 0;
+  for (std::size_t i = 0; i < alarms.size(); ++i) {
+    if (i > 0 && alarms[i].instance == alarms[i - 1].instance) continue;
+    check(body.set_pose({&bones[alarms[i].instance * 12 * bone_count], bone_count, SC_ROWS_3X4}));
+    const std::size_t count = body.contacts().part_count;
+    check(body.status());
+    confirmed += count;
+    characters += count > 0 ? 1 : 0;
   }
   return confirmed;
 }
@@ -219,7 +208,7 @@ void run(const std::vector<char>& file, const samples::GltfCharacter& clips, con
   const std::vector<CrowdPair> alarms = find_alarms(asset, bones);
   const auto between = Clock::now();
   std::size_t characters = 0;
-  const std::size_t confirmed = confirm(asset, bones, alarms, characters);
+  const std::size_t confirmed = confirm(model, bones, alarms, characters);
   const std::chrono::duration<double, std::micro> by_spheres = between - start, by_skin = Clock::now() - between;
 
   std::size_t alarmed = 0;
@@ -228,7 +217,7 @@ void run(const std::vector<char>& file, const samples::GltfCharacter& clips, con
   }
   std::printf("spheres: %zu of %zu characters alarmed, %zu pairs, %.1f us a character\n", alarmed, kCharacters,
               alarms.size(), by_spheres.count() / kCharacters);
-  std::printf("skin: %zu characters, %zu of the pairs, %.1f us an alarmed character\n", characters, confirmed,
+  std::printf("skin: %zu characters, %zu pairs of body parts, %.1f us an alarmed character\n", characters, confirmed,
               alarmed == 0 ? 0 : by_skin.count() / static_cast<double>(alarmed));
   stand(model, bones, map);
 }

@@ -3,10 +3,10 @@
 
 #include <chrono>
 
+#include "pairs/detect_job.h"
 #include "pairs/plain_detection.h"
 #include "play/asset_file.h"
-#include "spherechain/detect.h"
-#include "spherechain/refit.h"
+#include "refit/refit_job.h"
 #include "statistics.h"
 
 namespace spherechain::paper {

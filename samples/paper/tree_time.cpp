@@ -8,9 +8,9 @@
 
 #include "chain_trees.h"
 #include "mesh/error.h"
+#include "pairs/detect_job.h"
 #include "play/asset_file.h"
-#include "spherechain/detect.h"
-#include "spherechain/refit.h"
+#include "refit/refit_job.h"
 #include "split_spheres.h"
 #include "statistics.h"
 
@@ -36,8 +36,8 @@ class TreeCase {
         frames_(std::move(frames)),
         plain_(view_of(asset), SC_RADIUS_FIT) {
     for (const std::size_t branching : {2, 4, 8}) trees_.emplace_back(view_of(asset), SC_RADIUS_FIT, runs, branching);
-    table_.resize(sc_detect_table_words(&asset));
-    baker::check_runtime(sc_prepare_detect(&asset, SC_RADIUS_FIT, nullptr, table_.data(), table_.size()));
+    table_.resize(detect_table_words(&asset));
+    baker::check_runtime(prepare_detect(&asset, SC_RADIUS_FIT, nullptr, table_.data(), table_.size()));
   }
 
   const std::string& series() const { return series_; }

@@ -6,10 +6,10 @@
 #include <set>
 
 #include "mesh/error.h"
+#include "pairs/detect_job.h"
 #include "picture.h"
 #include "play/play.h"
 #include "play/player.h"
-#include "spherechain/detect.h"
 
 using namespace spherechain::baker;
 using namespace spherechain::pictures;

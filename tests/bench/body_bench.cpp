@@ -12,9 +12,9 @@
 #include <random>
 #include <stdexcept>
 
+#include "depth/penetration_jobs.h"
+#include "refit/refit_job.h"
 #include "simd/simd.h"
-#include "spherechain/bodies.h"
-#include "spherechain/refit.h"
 #include "table.h"
 #include "wrestlers.h"
 
@@ -64,7 +64,7 @@ class Crowd {
     spheres_.resize(kCount * human.sphere_count());
     scene_.resize(kCount);
     pairs_.resize(64 * kCount);
-    scratch_ = memory_for(std::max(sc_scene_scratch_words(kCount), sc_body_scratch_words(&human.asset, &human.asset)));
+    scratch_ = memory_for(std::max(sc_scene_scratch_words(kCount), body_scratch_words(&human.asset, &human.asset)));
     parts_.resize(human.view().part_count() * human.view().part_count());
   }
 
@@ -90,7 +90,7 @@ class Crowd {
       scene_[i].spheres = nullptr;
       scene_[i].sphere_count = 0;
       const JobBody one = body(i);
-      require(sc_bound_body(&one, &scene_[i].low, &scene_[i].high), "bounds");
+      require(bound_body(one, scene_[i].low, scene_[i].high), "bounds");
     }
     boxes_touch = meet();
     std::size_t with_contacts = 0;
@@ -169,8 +169,7 @@ class Bench {
     const std::size_t parts = human.view().part_count();
     parts_.resize(parts * parts);
     triangles_.resize(1 << 20);
-    scratch_ =
-        memory_for(std::max(sc_body_scratch_words(&human.asset, &human.asset), sc_skin_scratch_words(&human.asset)));
+    scratch_ = memory_for(std::max(body_scratch_words(&human.asset, &human.asset), skin_scratch_words(&human.asset)));
     compare();
     for (const int body : {0, 1}) {
       contestants_.push_back({body == 0 ? "body a with itself" : "body b with itself", passes,

@@ -8,7 +8,7 @@
 #include "mesh/error.h"
 #include "motion/capture.h"
 #include "motion/poses.h"
-#include "spherechain/refit.h"
+#include "refit/refit_job.h"
 
 namespace spherechain::bench {
 namespace {
@@ -65,8 +65,9 @@ std::vector<NamedMotion> motions_of(const baker::Bake& bake) {
   }
   for (const std::string name : {"01_01", "01_03", "Boxing_Toes"}) {
     const auto file = std::filesystem::path(kCaptures) / (name + ".bvh");
-    out.push_back({name, std::make_unique<baker::CaptureMotion>(baker::read_capture(file),
-                                                                body_of(bake.joints, bake.regions.frame, bake.character.file))});
+    out.push_back(
+        {name, std::make_unique<baker::CaptureMotion>(baker::read_capture(file),
+                                                      body_of(bake.joints, bake.regions.frame, bake.character.file))});
   }
   return out;
 }

@@ -4,14 +4,14 @@
 
 #include "contact_finder.h"
 #include "pairs/pair_bits.h"
-#include "spherechain/skin_contacts.h"
+#include "skin/contact_jobs.h"
 
 namespace spherechain::bench {
 
 ContactMesh::ContactMesh(const PosedCharacter& character)
-    : character(character), skin_table(memory_for(sc_skin_table_words(&character.asset))) {
+    : character(character), skin_table(memory_for(skin_table_words(&character.asset))) {
   std::uint64_t* const words = skin_table.data()->words;
-  if (sc_prepare_skin(&character.asset, words, sc_skin_table_words(&character.asset)) != SC_OK ||
+  if (prepare_skin(&character.asset, words, skin_table_words(&character.asset)) != SC_OK ||
       read_skin_table(character.view(), words, surface) != SC_OK) {
     throw std::runtime_error("the asset's skin cannot be prepared");
   }

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "spherechain/detect.h"
+#include "pairs/detect_job.h"
 
 namespace spherechain::bench {
 namespace {

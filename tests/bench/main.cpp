@@ -14,8 +14,8 @@
 #include "mesh_refit.h"
 #include "pair_finder.h"
 #include "port_probe.h"
+#include "refit/refit_job.h"
 #include "simd/simd.h"
-#include "spherechain/refit.h"
 #include "table.h"
 #include "timing.h"
 

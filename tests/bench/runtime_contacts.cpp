@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "contact_finder.h"
-#include "spherechain/penetrations.h"
+#include "depth/penetration_jobs.h"
 
 namespace spherechain::bench {
 namespace {
@@ -16,13 +16,13 @@ class RuntimeFinder : public ContactFinder {
         output_(output),
         reads_vertices_(reads_vertices),
         reads_bones_(reads_bones),
-        scratch_(memory_for(sc_skin_scratch_words(&mesh.character.asset))),
+        scratch_(memory_for(skin_scratch_words(&mesh.character.asset))),
         parts_(mesh.character.view().part_count() * (mesh.character.view().part_count() + 1) / 2),
         triangles_(1 << 16) {
     job_.asset = &mesh.character.asset;
     job_.skin_table = mesh.skin_table.data()->words;
     job_.scratch = scratch_.data()->words;
-    job_.scratch_words = sc_skin_scratch_words(&mesh.character.asset);
+    job_.scratch_words = skin_scratch_words(&mesh.character.asset);
     set_lists(output_ == Output::kParts, output_ == Output::kTriangles);
   }
 
@@ -86,12 +86,12 @@ class DepthFinder : public ContactFinder {
   DepthFinder(const ContactMesh& mesh, const std::string& name, bool quick)
       : ContactFinder(name),
         finder_(mesh, name, Output::kTriangles, false, true),
-        scratch_(memory_for(sc_penetration_scratch_words(&mesh.character.asset, kContactsMax))),
+        scratch_(memory_for(penetration_scratch_words(&mesh.character.asset, kContactsMax))),
         found_(mesh.character.view().part_count() * (mesh.character.view().part_count() + 1) / 2) {
     job_.asset = &mesh.character.asset;
     job_.skin_table = mesh.skin_table.data()->words;
     job_.scratch = scratch_.data()->words;
-    job_.scratch_words = sc_penetration_scratch_words(&mesh.character.asset, kContactsMax);
+    job_.scratch_words = penetration_scratch_words(&mesh.character.asset, kContactsMax);
     job_.quick = quick ? 1 : 0;
     job_.penetrations = found_.data();
     job_.penetration_capacity = found_.size();

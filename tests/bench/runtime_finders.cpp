@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "pair_finder.h"
-#include "spherechain/detect.h"
+#include "pairs/detect_job.h"
 
 namespace spherechain::bench {
 namespace {
@@ -16,8 +16,8 @@ class RuntimeFinder : public PairFinder {
         sphere_count_(view_of(asset).spheres().size),
         pairs_(output == Output::kList ? sphere_count_ * sphere_count_ : 0),
         bits_(output == Output::kBits ? sc_pair_words(&asset) : 0),
-        table_(sc_detect_table_words(&asset)) {
-    if (sc_prepare_detect(&asset, job_.radius, nullptr, table_.data(), table_.size()) != SC_OK) {
+        table_(detect_table_words(&asset)) {
+    if (prepare_detect(&asset, job_.radius, nullptr, table_.data(), table_.size()) != SC_OK) {
       throw std::logic_error(this->name);
     }
     job_.asset = &asset;

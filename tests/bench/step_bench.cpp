@@ -14,7 +14,7 @@
 
 #include "simd/simd.h"
 #include "skin/skin_inputs.h"
-#include "spherechain/steps.h"
+#include "step/step_job.h"
 #include "table.h"
 #include "wrestlers.h"
 
@@ -79,15 +79,15 @@ class Bench {
  public:
   Bench(int steps, int passes, double rate) {
     load(human_, "human", "{}", 33);
-    table_ = memory_for(sc_skin_table_words(&human_.asset));
-    require(sc_prepare_skin(&human_.asset, table_.data()->words, sc_skin_table_words(&human_.asset)), "skin table");
+    table_ = memory_for(skin_table_words(&human_.asset));
+    require(prepare_skin(&human_.asset, table_.data()->words, skin_table_words(&human_.asset)), "skin table");
     require(read_skin_table(human_.view(), table_.data()->words, surface_), "skin table");
     contacts_.resize(4096);
     parts_.resize(4096);
-    sc_motion sized;
+    Motion sized;
     sized.body.asset = &human_.asset;
     sized.joint_count = human_.view().bone_count();
-    scratch_ = memory_for(std::max(sc_step_scratch_words(&sized, nullptr), sc_skin_scratch_words(&human_.asset)));
+    scratch_ = memory_for(std::max(step_scratch_words(&sized, nullptr), skin_scratch_words(&human_.asset)));
     std::mt19937 random(13);
     const auto motions = motions_of(human_.bake);
     for (const auto& [name, motion] : motions) {
@@ -245,7 +245,7 @@ class Bench {
     job.contacts = triangles_.data();
     job.contact_count = find.triangle_count;
     job.quick = 1;
-    Memory room = memory_for(sc_penetration_scratch_words(find.asset, job.contact_count));
+    Memory room = memory_for(penetration_scratch_words(find.asset, job.contact_count));
     job.scratch = room.data()->words;
     job.scratch_words = 8 * room.size();
     std::vector<Penetration> out(find.part_count);

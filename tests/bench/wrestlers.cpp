@@ -27,8 +27,8 @@ void put(const baker::Affine& bone, float* out) {
 
 Wrestlers::Wrestlers(int frames) {
   load(human_, "human", "{}", 33);
-  table_ = memory_for(sc_skin_table_words(&human_.asset));
-  require(sc_prepare_skin(&human_.asset, table_.data()->words, sc_skin_table_words(&human_.asset)), "skin table");
+  table_ = memory_for(skin_table_words(&human_.asset));
+  require(prepare_skin(&human_.asset, table_.data()->words, skin_table_words(&human_.asset)), "skin table");
   require(read_skin_table(human_.view(), table_.data()->words, surface_), "skin table");
   make_truth();
   const auto motions = motions_of(human_.bake);

@@ -283,6 +283,10 @@ public static class ApiTest
             ulong[] parts_of_a = model.PartSet(Enumerable.Range(0, model.PartCount).ToArray());
             Check(a.Contacts(b, new Query { IgnoredParts = parts_of_a }).Parts.Count == 0, "ignored parts meet nothing");
             Check(b.Contacts(a, new Query { IgnoredPartsOfOther = parts_of_a }).Parts.Count == 0, "nor the other way round");
+            PartContact first = a.Contacts(b, full).Parts[0];
+            ulong[] first_alone = model.PairSet(model, new Pair { A = first.PartA, B = first.PartB });
+            Check(a.Contacts(b, new Query { PartPairs = first_alone }).Parts.Count == 1, "one pair of parts alone");
+            Refused("few pairs", Code.TooSmall, "query", "PairSet", () => a.Contacts(b, new Query { PartPairs = new ulong[0] }));
             Check(a.Penetrations(b).Count > 0 && a.Penetrations().Count > 0 && a.Penetrations(b) != a.Penetrations(),
                   "lists of their own: " + a.Penetrations(b).Count + ", " + a.Penetrations().Count);
         }

@@ -17,8 +17,8 @@ constexpr std::size_t kBodyContacts = 60;
 
 // False where the asset has no skin, or a large one.
 bool draw_body(Case& c, JobBody& body) {
-  const std::size_t table_words = sc_skin_table_words(&c.asset);
-  if (table_words == 0 || table_words > kBodyWords || sc_body_scratch_words(&c.asset, &c.asset) > kBodyWords) {
+  const std::size_t table_words = skin_table_words(&c.asset);
+  if (table_words == 0 || table_words > kBodyWords || body_scratch_words(&c.asset, &c.asset) > kBodyWords) {
     return false;
   }
   body.asset = &c.asset;
@@ -28,7 +28,7 @@ bool draw_body(Case& c, JobBody& body) {
     return false;
   }
   std::uint64_t* const table = c.arena.add<std::uint64_t>(table_words);
-  c.expect(sc_prepare_skin(&c.asset, table, table_words) == SC_OK, "a skin table is refused");
+  c.expect(prepare_skin(&c.asset, table, table_words) == SC_OK, "a skin table is refused");
   body.skin_table = table;
   if (c.random.one_in(3)) {
     std::uint64_t* const parts = c.arena.add<std::uint64_t>(sc_part_words(&c.asset));
@@ -113,7 +113,7 @@ void fuzz_body_contacts(Case& c) {
     return;
   }
   job.spheres_only = c.random.one_in(4) ? 1 : 0;
-  job.scratch_words = sc_body_scratch_words(&c.asset, &c.asset);
+  job.scratch_words = body_scratch_words(&c.asset, &c.asset);
   job.scratch = c.arena.add<std::uint64_t>(job.scratch_words);
   job.sphere_capacity = c.random.below(30);
   job.spheres = c.arena.add<Pair>(job.sphere_capacity);
@@ -188,7 +188,7 @@ void fuzz_body_penetrations(Case& c) {
   }
   job.contacts = contacts;
   job.quick = c.random.one_in(3) ? 1 : 0;
-  job.scratch_words = sc_body_penetration_scratch_words(&c.asset, &c.asset, job.contact_count);
+  job.scratch_words = body_penetration_scratch_words(&c.asset, &c.asset, job.contact_count);
   job.scratch = c.arena.add<std::uint64_t>(job.scratch_words);
   job.penetration_capacity = c.random.below(10);
   job.penetrations = c.arena.add<Penetration>(job.penetration_capacity);
@@ -218,7 +218,7 @@ void fuzz_floor(Case& c) {
   if (c.random.one_in(2)) {
     job.terrain = [](const void*, sc_vec3 p) { return p.x > 0 ? 0.5F : NAN; };
   }
-  job.scratch_words = sc_floor_scratch_words(&c.asset);
+  job.scratch_words = floor_scratch_words(&c.asset);
   job.scratch = c.arena.add<std::uint64_t>(job.scratch_words);
   job.penetration_capacity = c.random.below(10);
   job.penetrations = c.arena.add<Penetration>(job.penetration_capacity);

@@ -105,9 +105,8 @@ void fuzz_accessors(Case& c) {
                sc_target_name(draw_none<Target>(c, 8)) != nullptr,
            "text of what does not exist");
   for (const Asset* none : {static_cast<const Asset*>(nullptr), static_cast<const Asset*>(&c.closed)}) {
-    c.expect(sc_asset_is_open(none) == 0 && sc_pair_words(none) + sc_detect_table_words(none) +
-                                                    sc_skin_table_words(none) + sc_skin_scratch_words(none) +
-                                                    sc_crowd_scratch_words(none, 3) ==
+    c.expect(sc_asset_is_open(none) == 0 && sc_pair_words(none) + detect_table_words(none) + skin_table_words(none) +
+                                                    skin_scratch_words(none) + sc_crowd_scratch_words(none, 3) ==
                                                 0,
              "sizes of an asset that is not open");
   }
@@ -137,7 +136,7 @@ void fuzz_prepare(Case& c) {
     return;
   }
   const bool is_skin = c.random.one_in(2);
-  const std::size_t needed = is_skin ? sc_skin_table_words(&c.asset) : sc_detect_table_words(&c.asset);
+  const std::size_t needed = is_skin ? skin_table_words(&c.asset) : detect_table_words(&c.asset);
   if (needed > (std::size_t{1} << 18)) {
     return;
   }
@@ -164,7 +163,7 @@ void fuzz_prepare(Case& c) {
   }
   Call call;
   call.run = [&] {
-    return is_skin ? sc_prepare_skin(asset, words, count) : sc_prepare_detect(asset, radius, used, words, count);
+    return is_skin ? prepare_skin(asset, words, count) : prepare_detect(asset, radius, used, words, count);
   };
   call.outputs = [&] { return std::vector<Bytes>{bytes_of(words, needed)}; };
   call.writes_all = false;  // gaps of alignment
@@ -172,7 +171,7 @@ void fuzz_prepare(Case& c) {
 }
 
 void fuzz_binding(Case& c) {
-  if (!draw_asset(c) || sc_skin_table_words(&c.asset) > (std::size_t{1} << 18)) {
+  if (!draw_asset(c) || skin_table_words(&c.asset) > (std::size_t{1} << 18)) {
     return;
   }
   const std::vector<Bone> joints = draw_engine_joints(c);
@@ -194,7 +193,7 @@ void fuzz_binding(Case& c) {
     const Status status = sc_gather_bones(&c.asset, joint_of_bone.data(), &pose, gathered.data());
     c.expect(status == SC_OK, "matrices are not gathered");
     message[0] = '\0';
-    const Status rest = sc_check_rest_pose(&c.asset, &pose, message, sizeof message);
+    const Status rest = check_rest_pose(c.asset, pose, message, sizeof message);
     c.expect(rest == SC_OK || message[0] != '\0', "a refusal of the rest pose without a reason");
   }
   (bound == SC_OK ? c.tally.ran : c.tally.refused) += 1;

@@ -9,8 +9,13 @@
 
 #include "arena.h"
 #include "asset/asset_view.h"
+#include "depth/penetration_jobs.h"
+#include "pairs/detect_job.h"
+#include "pose/pose.h"
 #include "random.h"
+#include "refit/refit_job.h"
 #include "spherechain/spherechain.h"
+#include "step/step_job.h"
 
 namespace spherechain::test {
 

@@ -185,8 +185,8 @@ Ways ways_of(Case& c, SkinContactJob& job, Filter& filter, Target& other) {
 }  // namespace
 
 void fuzz_contacts(Case& c) {
-  const std::size_t table_words = draw_asset(c) ? sc_skin_table_words(&c.asset) : 0;
-  if (table_words == 0 || table_words > kMaxWords || sc_skin_scratch_words(&c.asset) > kMaxWords) {
+  const std::size_t table_words = draw_asset(c) ? skin_table_words(&c.asset) : 0;
+  if (table_words == 0 || table_words > kMaxWords || skin_scratch_words(&c.asset) > kMaxWords) {
     return;
   }
   SkinContactJob job;
@@ -198,13 +198,13 @@ void fuzz_contacts(Case& c) {
     return;
   }
   std::uint64_t* const table = c.arena.add<std::uint64_t>(table_words);
-  c.expect(sc_prepare_skin(&c.asset, table, table_words) == SC_OK, "a skin table is refused");
+  c.expect(prepare_skin(&c.asset, table, table_words) == SC_OK, "a skin table is refused");
   job.skin_table = table;
   Surface surface;
   c.expect(read_skin_table(c.view(), table, surface) == SC_OK, "a skin table is not read");
   Filter filter;
   draw_question(c, job, filter);
-  job.scratch_words = sc_skin_scratch_words(&c.asset);
+  job.scratch_words = skin_scratch_words(&c.asset);
   job.scratch = c.arena.add<std::uint64_t>(job.scratch_words);
   job.sphere_capacity = c.random.below(30);
   job.spheres = c.arena.add<Pair>(job.sphere_capacity);

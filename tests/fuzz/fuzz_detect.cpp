@@ -45,10 +45,10 @@ void fuzz_detect(Case& c) {
   const Filter* const used = c.random.one_in(2) ? &filter : nullptr;
   if (used != nullptr) filter = draw_filter(c);
   const std::vector<Pair> expected = find(c, spheres, job.radius, used);
-  const std::size_t table_words = sc_detect_table_words(&c.asset);
+  const std::size_t table_words = detect_table_words(&c.asset);
   std::uint64_t* const table = c.arena.add<std::uint64_t>(table_words);
   if (c.random.one_in(2)) {
-    c.expect(sc_prepare_detect(&c.asset, job.radius, used, table, table_words) == SC_OK, "a table is refused");
+    c.expect(prepare_detect(&c.asset, job.radius, used, table, table_words) == SC_OK, "a table is refused");
     job.table = table;
   } else {
     job.filter = used;

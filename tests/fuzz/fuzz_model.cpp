@@ -277,8 +277,8 @@ void ask_bodies(Case& c, const Model& model, Memory& memory) {
 }  // namespace
 
 void fuzz_model(Case& c) {
-  if (!draw_asset(c) || sc_skin_table_words(&c.asset) > kModelWords || sc_skin_scratch_words(&c.asset) > kModelWords ||
-      sc_body_scratch_words(&c.asset, &c.asset) > kModelWords) {
+  if (!draw_asset(c) || skin_table_words(&c.asset) > kModelWords || skin_scratch_words(&c.asset) > kModelWords ||
+      body_scratch_words(&c.asset, &c.asset) > kModelWords) {
     return;
   }
   const std::vector<Bone> joints = draw_engine_joints(c);

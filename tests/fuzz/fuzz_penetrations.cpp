@@ -16,7 +16,7 @@ void draw_contacts(Case& c, PenetrationJob& job, const Surface& surface) {
   TriangleContact* const contacts = c.arena.add<TriangleContact>(job.contact_count);
   job.contacts = contacts;
   if (c.random.one_in(2)) {
-    std::vector<std::uint64_t> scratch(sc_skin_scratch_words(&c.asset));
+    std::vector<std::uint64_t> scratch(skin_scratch_words(&c.asset));
     SkinContactJob find;
     find.asset = job.asset;
     find.pose = job.pose;
@@ -84,9 +84,9 @@ void make_comparable(Penetration& one) {
 }
 
 void fuzz_penetrations(Case& c) {
-  const std::size_t table_words = draw_asset(c) ? sc_skin_table_words(&c.asset) : 0;
+  const std::size_t table_words = draw_asset(c) ? skin_table_words(&c.asset) : 0;
   if (table_words == 0 || table_words > kMaxScratch ||
-      sc_penetration_scratch_words(&c.asset, kMaxContacts) > kMaxScratch) {
+      penetration_scratch_words(&c.asset, kMaxContacts) > kMaxScratch) {
     return;
   }
   PenetrationJob job;
@@ -97,7 +97,7 @@ void fuzz_penetrations(Case& c) {
     return;
   }
   std::uint64_t* const table = c.arena.add<std::uint64_t>(table_words);
-  c.expect(sc_prepare_skin(&c.asset, table, table_words) == SC_OK, "a skin table is refused");
+  c.expect(prepare_skin(&c.asset, table, table_words) == SC_OK, "a skin table is refused");
   job.skin_table = table;
   Surface surface;
   c.expect(read_skin_table(c.view(), table, surface) == SC_OK, "a skin table is not read");
@@ -115,7 +115,7 @@ void fuzz_penetrations(Case& c) {
   }
   job.previous = previous;
   job.previous_count = 4;
-  job.scratch_words = sc_penetration_scratch_words(&c.asset, job.contact_count);
+  job.scratch_words = penetration_scratch_words(&c.asset, job.contact_count);
   job.scratch = c.arena.add<std::uint64_t>(job.scratch_words);
   job.penetration_capacity = c.random.below(10);
   job.penetrations = c.arena.add<Penetration>(job.penetration_capacity);

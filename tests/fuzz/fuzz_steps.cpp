@@ -262,8 +262,7 @@ void check_contacts(Case& c, const StepJob& job) {
     if (of.at_end != 0) at_end.push_back(parts);
   }
   if (job.a.blend == SC_BLEND_LINEAR && job.b.blend == SC_BLEND_LINEAR) {
-    const std::vector<std::uint64_t> scratch(sc_body_scratch_words(&c.asset, &c.asset) +
-                                             sc_skin_scratch_words(&c.asset));
+    const std::vector<std::uint64_t> scratch(body_scratch_words(&c.asset, &c.asset) + skin_scratch_words(&c.asset));
     const auto are_as_in = [](const Parts& found, const PartsAtEnd& frame) {
       return std::includes(frame.all.begin(), frame.all.end(), found.begin(), found.end()) &&
              std::includes(found.begin(), found.end(), frame.sound.begin(), frame.sound.end());
@@ -276,12 +275,12 @@ void check_contacts(Case& c, const StepJob& job) {
 }  // namespace
 
 void fuzz_steps(Case& c) {
-  const std::size_t table_words = draw_asset(c) ? sc_skin_table_words(&c.asset) : 0;
+  const std::size_t table_words = draw_asset(c) ? skin_table_words(&c.asset) : 0;
   if (table_words == 0 || table_words > kStepWords || c.n > kMostSpheres || c.view().part_count() > 20) {
     return;
   }
   std::uint64_t* const table = c.arena.add<std::uint64_t>(table_words);
-  c.expect(sc_prepare_skin(&c.asset, table, table_words) == SC_OK, "a skin table is refused");
+  c.expect(prepare_skin(&c.asset, table, table_words) == SC_OK, "a skin table is refused");
   StepJob job;
   const bool has_two = c.random.one_in(2);
   bool may_be_wild = false;
@@ -295,7 +294,7 @@ void fuzz_steps(Case& c) {
   }
   const float tolerances[] = {0, 0, 1e-3F, 1, 1e-30F};
   job.tolerance = c.random.pick(tolerances);
-  job.scratch_words = sc_step_scratch_words(&job.a, has_two ? &job.b : nullptr);
+  job.scratch_words = step_scratch_words(&job.a, has_two ? &job.b : nullptr);
   if (job.scratch_words > kStepWords) {
     return;
   }

@@ -166,9 +166,9 @@ bool use_vertices(const Asset& asset, bool has_skin, bool is_small) {
 Use use_fully(const Asset& asset) {
   read_all(asset);
   const AssetInfo info = sc_asset_get_info(&asset);
-  const bool is_usual = info.vertex_count <= kMaxVertexCount && sc_skin_table_words(&asset) <= kMaxTableWords;
+  const bool is_usual = info.vertex_count <= kMaxVertexCount && skin_table_words(&asset) <= kMaxTableWords;
   const bool is_small = is_usual && info.vertex_count <= kMaxTossed;
-  const bool has_skin = is_usual && sc_skin_table_words(&asset) > 0;
+  const bool has_skin = is_usual && skin_table_words(&asset) > 0;
   if (has_skin) {
     const PreparedSkin table(asset);
     if (table.status != SC_OK) {

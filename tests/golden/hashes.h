@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "spherechain/penetrations.h"
+#include "depth/penetration_jobs.h"
 
 namespace spherechain::test {
 

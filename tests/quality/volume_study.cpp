@@ -36,7 +36,9 @@ std::vector<PosedTruth> truths(const AnimatedAsset& animated, const Colliders& b
   for (int i = 0; i < animated.frame_count(); ++i) {
     const Deformation deformation = animated.deformation(i);
     PosedTruth one{deformation.bones, {}};
-    for (const sc_triangle_contact& contact : player.find(BonePose(animated.asset(), deformation).pose())) {
+    const BonePose pose(animated.asset(), deformation);
+    player.set_pose(pose.pose());
+    for (const sc_triangle_contact& contact : player.triangles()) {
       const int a = body_of_part[contact.part_a], b = body_of_part[contact.part_b];
       if (a == b || bodies.bodies[static_cast<std::size_t>(a)].parent == b ||
           bodies.bodies[static_cast<std::size_t>(b)].parent == a) {

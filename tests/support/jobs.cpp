@@ -44,8 +44,8 @@ namespace {
 
 // With a table the job finds all that it found without: `job` has run and `expected` is its buffers.
 bool is_same_by_table(DetectJob job, const Detected& expected) {
-  std::vector<std::uint64_t> table(sc_detect_table_words(job.asset), kDirty);
-  if (sc_prepare_detect(job.asset, job.radius, job.filter, table.data(), table.size()) != SC_OK) {
+  std::vector<std::uint64_t> table(detect_table_words(job.asset), kDirty);
+  if (prepare_detect(job.asset, job.radius, job.filter, table.data(), table.size()) != SC_OK) {
     return false;
   }
   Detected found = expected;
@@ -96,8 +96,8 @@ Detected detect(const Asset& asset, const std::vector<Sphere>& spheres, Radius r
   return result;
 }
 
-PreparedSkin::PreparedSkin(const Asset& asset) : words(sc_skin_table_words(&asset), kDirty) {
-  status = sc_prepare_skin(&asset, words.data(), words.size());
+PreparedSkin::PreparedSkin(const Asset& asset) : words(skin_table_words(&asset), kDirty) {
+  status = prepare_skin(&asset, words.data(), words.size());
   if (status == SC_OK) {
     status = read_skin_table(view_of(asset), words.data(), surface);
   }
@@ -158,12 +158,12 @@ std::unique_ptr<PreparedSkin> prepare(const Asset* asset, const std::uint64_t*& 
 
 SkinContacts find_contacts(SkinContactJob job) {
   const auto table = prepare(job.asset, job.skin_table);
-  return find_all(job, sc_skin_scratch_words(job.asset));
+  return find_all(job, skin_scratch_words(job.asset));
 }
 
 SkinContacts find_contacts(BodyContactJob job) {
   const auto a = prepare(job.a.asset, job.a.skin_table), b = prepare(job.b.asset, job.b.skin_table);
-  return find_all(job, sc_body_scratch_words(job.a.asset, job.b.asset));
+  return find_all(job, body_scratch_words(job.a.asset, job.b.asset));
 }
 
 const StepContact* StepContacts::of(std::uint32_t part_a, std::uint32_t part_b) const {
@@ -176,7 +176,7 @@ const StepContact* StepContacts::of(std::uint32_t part_a, std::uint32_t part_b) 
 StepContacts find_contacts(StepJob job) {
   const auto a = prepare(job.a.body.asset, job.a.body.skin_table), b = prepare(job.b.body.asset, job.b.body.skin_table);
   const bool has_two = job.b.body.asset != nullptr;
-  std::vector<std::uint64_t> scratch(sc_step_scratch_words(&job.a, has_two ? &job.b : nullptr), kDirty);
+  std::vector<std::uint64_t> scratch(step_scratch_words(&job.a, has_two ? &job.b : nullptr), kDirty);
   job.scratch = scratch.data();
   job.scratch_words = scratch.size();
   StepContacts out;
@@ -212,14 +212,14 @@ std::vector<Penetration> measure_all(Job job, std::size_t scratch_words, Target 
 std::vector<Penetration> measure(PenetrationJob job, Target target) {
   const PreparedSkin table(*job.asset);
   job.skin_table = table.words.data();
-  return measure_all(job, sc_penetration_scratch_words(job.asset, job.contact_count), target);
+  return measure_all(job, penetration_scratch_words(job.asset, job.contact_count), target);
 }
 
 std::vector<Penetration> measure(BodyPenetrationJob job, Target target) {
   const PreparedSkin a(*job.a.asset), b(*job.b.asset);
   job.a.skin_table = a.words.data();
   job.b.skin_table = b.words.data();
-  return measure_all(job, sc_body_penetration_scratch_words(job.a.asset, job.b.asset, job.contact_count), target);
+  return measure_all(job, body_penetration_scratch_words(job.a.asset, job.b.asset, job.contact_count), target);
 }
 
 }  // namespace spherechain::test

@@ -8,7 +8,11 @@
 
 #include "simd/simd.h"
 #include "skin/skin_table.h"
+#include "depth/penetration_jobs.h"
+#include "pairs/detect_job.h"
+#include "refit/refit_job.h"
 #include "spherechain/spherechain.h"
+#include "step/step_job.h"
 
 namespace spherechain::test {
 
@@ -31,7 +35,7 @@ struct Detected {
 Detected detect(const Asset& asset, const std::vector<Sphere>& spheres, Radius radius, Target target = SC_TARGET_BEST,
                 const Filter* filter = nullptr);
 
-// An asset's skin table. `status` is that of sc_prepare_skin(), or of reading the table.
+// An asset's skin table. `status` is that of prepare_skin(), or of reading the table.
 struct PreparedSkin {
   explicit PreparedSkin(const Asset& asset);
   PreparedSkin(const PreparedSkin&) = delete;  // the surface points into this

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "spherechain/detect.h"
+#include "pairs/detect_job.h"
 
 namespace spherechain::test {
 

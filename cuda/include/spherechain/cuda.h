@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Q1 and Q2 for crowds on a CUDA device: bones or spheres in, touching pairs out. The device gives the same spheres and
-// pairs as sc_refit() and sc_detect() on the CPU, bit for bit (docs/arithmetic.md). C++17.
+// Crowds on a CUDA device: bones or spheres in, touching pairs out. The device gives the same spheres and pairs as
+// sc_find_sphere_pairs() on the CPU, bit for bit (docs/arithmetic.md). C++17.
 //
 // A program that links this library starts on machines without a GPU or a driver; only what is enqueued needs a device.
 // All threads may call everything at once, with other output memory.
@@ -53,7 +53,7 @@ struct CrowdGroup {
   // Out. Each may be null.
   Sphere* refitted = nullptr;       // from bones: the asset's spheres for each instance, without the filter's padding
   std::uint32_t* counts = nullptr;  // the number of pairs of each instance
-  std::uint64_t* bits = nullptr;    // sc_pair_words() words for each instance, as sc_detect_job::bits
+  std::uint64_t* bits = nullptr;    // sc_pair_words() words for each instance: bit b(b-1)/2 + a of each pair
 
   // Out: a list of pairs; null for none. It needs counts, starts and pair_count too. The pairs of one instance are
   // sorted and follow one another; the instances come in any order, and `starts` says where each begins.

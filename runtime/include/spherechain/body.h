@@ -42,6 +42,9 @@ typedef struct sc_query {
    * p's; null: all parts meet. */
   const uint64_t* ignored_parts SC_ZERO;
   const uint64_t* ignored_parts_of_other SC_ZERO;
+  /* Pairs of body parts that are asked about, in questions about contacts and penetrations: bit a n + b is of part a and
+   * part b, of a body or of `other` with n parts; null: all pairs. Of one body either order of the two will do. */
+  const uint64_t* part_pairs SC_ZERO;
   const sc_rule* rule SC_ZERO; /* null: sc_default_rule() */
   uint32_t classes SC_ZERO;    /* bit k: penetrations of class k are listed; 0: faults alone */
   size_t limit SC_ZERO;        /* the worst so many; 0: as many as there is room for */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Spheres and their pairs for many instances of one asset, one instance a SIMD lane. On a GPU: cuda.h. */
+/* Many characters: the pairs of spheres of each (on a GPU: cuda.h), and which of them may meet. */
 #pragma once
 
-#include "spherechain/detect.h"
+#include "spherechain/filter.h"
 #include "spherechain/pose.h"
 
 typedef struct sc_crowd_pair {
@@ -10,8 +10,9 @@ typedef struct sc_crowd_pair {
   sc_pair pair; /* of spheres */
 } sc_crowd_pair;
 
-/* For each instance exactly the pairs that a detect job reports, on every target and with any number of tasks. The
- * instances come as bones, or as spheres that are refitted already.
+/* The pairs of spheres of many instances of one asset, one instance a SIMD lane: for each exactly those that
+ * sc_find_sphere_pairs() reports, on every target and with any number of tasks. The instances come as bones, or as
+ * spheres that are refitted already.
  *
  * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
 typedef struct sc_crowd_job {
@@ -44,21 +45,64 @@ typedef struct sc_crowd_job {
 #endif
 } sc_crowd_job;
 
+/* A character or a prop among those of an sc_scene_job. */
+typedef struct sc_scene_body {
+  const sc_sphere* spheres SC_ZERO; /* refitted; or null: the box counts */
+  size_t sphere_count SC_ZERO;
+  sc_vec3 low SC_ZERO, high SC_ZERO; /* without spheres: a box around the body, as sc_get_bounds() has it; finite */
+  /* Moves the spheres, or the box, into the scene: a prop is refitted once, then moved. A scale that differs by axis
+   * makes spheres of its largest. Null: they are there. */
+  const sc_transform* transform SC_ZERO;
+  uint32_t layer SC_ZERO; /* below 32 */
+} sc_scene_body;
+
+/* Which of hundreds of characters and props may meet? All pairs of bodies with a sphere each that overlap; where one of
+ * the two has no spheres, whose boxes touch. Between boxes of sc_get_bounds() no pair whose skins meet is missing;
+ * those with a transform are larger by a millionth of their distance from the origin. Spheres are an alarm; those with
+ * a negative radius touch nothing.
+ *
+ * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
+typedef struct sc_scene_job {
+  const sc_scene_body* bodies SC_ZERO;
+  size_t body_count SC_ZERO; /* at most 2^24 */
+  /* 32 words; null: all layers meet. Bit k of word l: bodies of layer l meet those of layer k, and bit l of word k. */
+  const uint32_t* layers SC_ZERO;
+  const sc_pair* ignored SC_ZERO; /* bodies that never meet: a rider and his horse; sorted, each once; null: none */
+  size_t ignored_count SC_ZERO;
+  uint64_t* scratch SC_ZERO; /* sc_scene_scratch_words() words; nothing is kept there between runs */
+  size_t scratch_words SC_ZERO;
+  sc_pair* pairs SC_ZERO; /* out: of places in `bodies`; sorted, each once; null: count only */
+  size_t pair_capacity SC_ZERO;
+  size_t pair_count SC_ZERO; /* out: how many there are, also where `pairs` is too small */
+#if defined(__cplusplus)
+  sc_status run() noexcept;
+#endif
+} sc_scene_job;
+
 #if defined(__cplusplus)
 extern "C" {
 #endif
 
-/* SC_OK; SC_OVERFLOW: the first pairs are written; or as sc_detect() and sc_refit(): nothing is written. */
+/* SC_OK; SC_OVERFLOW: the first pairs are written; or SC_NULL, SC_MISALIGNED, SC_TOO_SMALL, SC_BAD_STRIDE,
+ * SC_BAD_VALUE, SC_ALIASED, SC_NOT_OPEN, SC_NOT_IN_ASSET, SC_UNSUPPORTED_TARGET: nothing is written. */
 SPHERECHAIN_API sc_status sc_detect_crowd(sc_crowd_job* job) SC_NOEXCEPT;
 
 /* 0 where the asset is not open. A human of 73 spheres and 19 bones, one task: some 80 KiB. */
 SPHERECHAIN_API size_t sc_crowd_scratch_words(const sc_asset* asset, size_t task_count) SC_NOEXCEPT;
 
+/* SC_OK; SC_OVERFLOW: the first pairs of the sorted list are written; SC_NULL, SC_MISALIGNED, SC_TOO_SMALL,
+ * SC_BAD_VALUE, SC_ALIASED: nothing is written. */
+SPHERECHAIN_API sc_status sc_find_meetings(sc_scene_job* job) SC_NOEXCEPT;
+SPHERECHAIN_API size_t sc_scene_scratch_words(size_t body_count) SC_NOEXCEPT;
+
 #if defined(__cplusplus)
 }
 inline sc_status sc_crowd_job::run() noexcept { return sc_detect_crowd(this); }
+inline sc_status sc_scene_job::run() noexcept { return sc_find_meetings(this); }
 namespace spherechain {
 using CrowdJob = sc_crowd_job;
 using CrowdPair = sc_crowd_pair;
+using SceneBody = sc_scene_body;
+using SceneJob = sc_scene_job;
 }  // namespace spherechain
 #endif

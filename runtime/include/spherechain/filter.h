@@ -16,8 +16,10 @@ typedef struct sc_filter {
 extern "C" {
 #endif
 
-/* Words of a bit for each pair. 0 where the asset is not open. */
+/* Words of a bit for each pair of spheres. 0 where the asset is not open. */
 SPHERECHAIN_API size_t sc_pair_words(const sc_asset* asset) SC_NOEXCEPT;
+/* Words of a bit for each body part. 0 where the asset is not open. */
+SPHERECHAIN_API size_t sc_part_words(const sc_asset* asset) SC_NOEXCEPT;
 
 /* These edit a filter's buffer. SC_BAD_VALUE: a sphere or region does not exist; nothing is written then. */
 /* The asset's own pairs. */

@@ -37,8 +37,7 @@ extern "C" {
 #endif
 
 /* Pass SC_ABI_VERSION for `abi`. On failure *model is null and `message`, where it is not null, says what to do: a
- * status of sc_asset_open() or sc_bind_joints(), SC_NULL, SC_NOT_IN_ASSET (the asset has no triangles) or SC_NO_MEMORY.
- */
+ * status of sc_asset_open() or sc_bind_joints(), SC_NULL or SC_NO_MEMORY. */
 SPHERECHAIN_API sc_status sc_create_model(uint32_t abi, const sc_model_def* def, sc_model** model, char* message,
                                           size_t message_size) SC_NOEXCEPT;
 SPHERECHAIN_API void sc_destroy_model(sc_model* model) SC_NOEXCEPT; /* null is fine */
@@ -51,7 +50,11 @@ SPHERECHAIN_API uint32_t sc_get_part_joint(const sc_model* model, uint32_t part)
 /* `triangle` is the source's number. */
 SPHERECHAIN_API sc_triangle sc_get_triangle(const sc_model* model, uint32_t triangle) SC_NOEXCEPT;
 
-/* sc_check_rest_pose() of a palette in the engine's order: call it once, when the character stands in its bind pose. */
+/* A self-check for the first run: `palette` is what the engine gives while the character stands in its bind pose. There
+ * every bone's matrix is the same, the model's own. SC_OTHER_BIND: the message names the first bone whose matrix moves
+ * the character otherwise, by more than a thousandth of its height. It finds wrong strides, matrices that lack the
+ * inverse bind matrix, and other rest poses. Stand the character off the origin and turned: where the model's matrix is
+ * the identity, a wrong layout does not show. Wrong orders never show in this pose: bind by name. */
 SPHERECHAIN_API sc_status sc_check_rest(const sc_model* model, const sc_pose* palette, char* message,
                                         size_t message_size) SC_NOEXCEPT;
 

@@ -63,14 +63,6 @@ SPHERECHAIN_API sc_status sc_gather_bones(const sc_asset* asset, const uint32_t*
  * the world, where others are. SC_BAD_VALUE: it is not finite, or its quaternion is of length zero. */
 SPHERECHAIN_API sc_status sc_place_bones(const sc_transform* transform, float* bones, size_t bone_count) SC_NOEXCEPT;
 
-/* A self-check for the first run: `pose` is what the engine gives while the character stands in its bind pose. There
- * every bone's matrix is the same, the model's own. SC_OTHER_BIND: the message names the first bone whose matrix moves
- * the character otherwise, by more than a thousandth of its height. It finds wrong strides, matrices that lack the
- * inverse bind matrix, and other rest poses. Stand the character off the origin and turned: where the model's matrix is
- * the identity, a wrong layout does not show. Wrong orders never show in this pose: bind by name. */
-SPHERECHAIN_API sc_status sc_check_rest_pose(const sc_asset* asset, const sc_pose* pose, char* message,
-                                             size_t message_size) SC_NOEXCEPT;
-
 #if defined(__cplusplus)
 }
 namespace spherechain {

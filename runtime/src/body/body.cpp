@@ -9,7 +9,7 @@
 #include "depth/measure.h"
 #include "pairs/pair_bits.h"
 #include "skin/scene_setup.h"
-#include "spherechain/steps.h"
+#include "step/step_job.h"
 
 namespace spherechain {
 namespace {
@@ -24,13 +24,13 @@ std::size_t scratch_words_of(const sc_model& model, const sc_model& other, std::
   const AssetView &a = view_of(model.asset), &b = view_of(other.asset);
   std::size_t words = std::max({skin_scratch_words(a), body_scratch_words(a, b), body_scratch_words(b, a),
                                 measure_words(a, a, true, max_triangles), measure_words(a, b, false, max_triangles),
-                                measure_words(b, a, false, max_triangles), sc_floor_scratch_words(&model.asset)});
+                                measure_words(b, a, false, max_triangles), floor_scratch_words(&model.asset)});
   if (finds_steps) {
-    sc_motion of_a{}, of_b{};
+    Motion of_a{}, of_b{};
     of_a.body.asset = &model.asset;
     of_b.body.asset = &other.asset;
     of_a.body.pose.vertices = of_b.body.pose.vertices = reinterpret_cast<const float*>(&words);  // with vertices or not
-    words = std::max({words, sc_step_scratch_words(&of_a, nullptr), sc_step_scratch_words(&of_a, &of_b)});
+    words = std::max({words, step_scratch_words(&of_a, nullptr), step_scratch_words(&of_a, &of_b)});
   }
   return words;
 }
@@ -55,7 +55,7 @@ std::size_t lay_out(sc_body& body, const sc_body_def& def, std::uint64_t* words)
   memory.take(body.parts, parts);
   memory.take(body.contact_spheres, max_triangles);
   memory.take(body.triangles, max_triangles);
-  memory.take(body.listed, words_for(parts));
+  memory.take(body.part_pairs, words_for(parts));
   for (Span<sc_penetration>& list : body.penetrations) {
     memory.take(list, def.max_penetrations > 0 ? def.max_penetrations : kPenetrations);
   }
@@ -155,11 +155,14 @@ sc_status sc_set_pose(sc_body* body, const sc_pose* pose, const sc_transform* pl
 }
 
 sc_status sc_get_bounds(const sc_body* body, sc_vec3* low, sc_vec3* high) noexcept {
-  if (body == nullptr || !body->now.is_given) {
-    return refuse(body == nullptr ? SC_NULL : SC_NOT_OPEN, SC_FIELD_BODIES);
+  if (body == nullptr || low == nullptr || high == nullptr) {
+    return refuse(SC_NULL, body == nullptr ? SC_FIELD_BODIES : SC_FIELD_OUTPUT);
+  }
+  if (!body->now.is_given) {
+    return refuse(SC_NOT_OPEN, SC_FIELD_BODIES);
   }
   const JobBody side = side_of(*body, nullptr);
-  return sc_bound_body(&side, low, high);
+  return bound_body(side, *low, *high);
 }
 
 }  // extern "C"

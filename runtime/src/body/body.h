@@ -3,7 +3,7 @@
 
 #include "asset/asset_view.h"
 #include "body/model.h"
-#include "spherechain/bodies.h"
+#include "depth/penetration_jobs.h"
 #include "spherechain/body.h"
 
 namespace spherechain {
@@ -29,7 +29,7 @@ struct sc_body {
   spherechain::Span<sc_part_contact> parts;
   spherechain::Span<sc_pair> contact_spheres;
   spherechain::Span<sc_triangle_contact> triangles;
-  std::uint64_t* listed;                              // a bit for each two parts
+  std::uint64_t* part_pairs;                          // a bit for each two parts, as of a contact job
   spherechain::Span<sc_penetration> penetrations[2];  // of the last question, and of the one before
   spherechain::Span<sc_step_contact> steps;
   bool has_spheres;  // of this pose, with that radius

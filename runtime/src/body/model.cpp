@@ -9,9 +9,9 @@
 #include "asset/asset_view.h"
 #include "asset/message.h"
 #include "asset/status.h"
+#include "pairs/detect_job.h"
 #include "pose/pose.h"
 #include "skin/scene_setup.h"
-#include "spherechain/detect.h"
 
 namespace spherechain {
 namespace {
@@ -41,8 +41,8 @@ constexpr std::size_t words_of(std::size_t bytes) {
 // Tables of an open asset; of null words it only counts them.
 std::size_t lay_out(sc_model& model, const sc_model_def& def, std::uint64_t* words) {
   WordMemory memory(words);
-  memory.take(model.skin_table, sc_skin_table_words(&model.asset));
-  memory.take(model.detect_table, sc_detect_table_words(&model.asset));
+  memory.take(model.skin_table, skin_table_words(&model.asset));
+  memory.take(model.detect_table, detect_table_words(&model.asset));
   if (def.joints != nullptr) {
     memory.take(model.joint_of_bone, view_of(model.asset).bone_count());
   }
@@ -61,10 +61,6 @@ Status fill(sc_model& model, std::uint32_t abi, const sc_model_def& def, char* m
   if (status != SC_OK) {
     return status;
   }
-  if (!has_skin(view_of(model.asset))) {
-    sentence.wrong("asset: it has no triangles, so there are no skin contacts");
-    return refuse(SC_NOT_IN_ASSET, SC_FIELD_ASSET);
-  }
   if (!model.tables.allocate(model.allocator, lay_out(model, def, nullptr))) {
     sentence.wrong("out of memory");
     return no_memory;
@@ -77,10 +73,12 @@ Status fill(sc_model& model, std::uint32_t abi, const sc_model_def& def, char* m
       return status;
     }
   }
-  status = sc_prepare_skin(&model.asset, model.skin_table, sc_skin_table_words(&model.asset));
+  if (has_skin(view_of(model.asset))) {
+    status = prepare_skin(&model.asset, model.skin_table, skin_table_words(&model.asset));
+  }
   return status != SC_OK ? status
-                         : sc_prepare_detect(&model.asset, SC_RADIUS_DETECT, nullptr, model.detect_table,
-                                             sc_detect_table_words(&model.asset));
+                         : prepare_detect(&model.asset, SC_RADIUS_DETECT, nullptr, model.detect_table,
+                                          detect_table_words(&model.asset));
 }
 
 }  // namespace
@@ -183,7 +181,7 @@ sc_status sc_check_rest(const sc_model* model, const sc_pose* palette, char* mes
     return refuse(SC_NULL, model == nullptr ? SC_FIELD_ASSET : SC_FIELD_BONES);
   }
   if (model->joint_of_bone == nullptr) {
-    return sc_check_rest_pose(&model->asset, palette, message, message_size);
+    return check_rest_pose(model->asset, *palette, message, message_size);
   }
   Block bones;
   const std::size_t count = view_of(model->asset).bone_count();
@@ -198,7 +196,7 @@ sc_status sc_check_rest(const sc_model* model, const sc_pose* palette, char* mes
     pose.bones = gathered;
     pose.bone_count = count;
     pose.bone_layout = SC_ROWS_3X4;
-    status = sc_check_rest_pose(&model->asset, &pose, message, message_size);
+    status = check_rest_pose(model->asset, pose, message, message_size);
   } else {
     Message(message, message_size).wrong("%s: %s", sc_field_name(status.field), sc_code_text(status.code));
   }

@@ -6,13 +6,13 @@
 
 #include "asset/status.h"
 #include "depth/measure.h"
+#include "depth/penetration_jobs.h"
+#include "pairs/detect_job.h"
 #include "pairs/pair_bits.h"
+#include "refit/refit_job.h"
+#include "skin/contact_jobs.h"
 #include "skin/scene_setup.h"
-#include "spherechain/detect.h"
-#include "spherechain/penetrations.h"
-#include "spherechain/refit.h"
-#include "spherechain/skin_contacts.h"
-#include "spherechain/steps.h"
+#include "step/step_job.h"
 
 namespace spherechain {
 namespace {
@@ -56,20 +56,36 @@ Status check_room(const sc_body& body, const sc_body& other, std::size_t words) 
   return parts > body.parts.size || words > body.scratch_words ? refuse(SC_TOO_SMALL, SC_FIELD_BODIES) : done();
 }
 
-// What contact jobs have in common.
+// Brings the pairs of parts that a query asks about into the order of a contact job.
+const std::uint64_t* pairs_asked(sc_body& body, const sc_body* other, const sc_query& query) {
+  if (query.part_pairs == nullptr || other != nullptr) {
+    return query.part_pairs;
+  }
+  TableOfParts<PartContact> places;
+  places.count_b = asset_of(body).part_count();
+  std::fill(body.part_pairs, body.part_pairs + words_for(body.parts.size), std::uint64_t{0});
+  for (std::size_t a = 0; a < places.count_b; ++a) {
+    for (std::size_t b = 0; b < places.count_b; ++b) {
+      const std::size_t bit = a * places.count_b + b, place = places.place(std::min(a, b), std::max(a, b), true);
+      body.part_pairs[place / 64] |= (query.part_pairs[bit / 64] >> bit % 64 & 1) << place % 64;
+    }
+  }
+  return body.part_pairs;
+}
+
+// A round of many leaves the list of parts, and what it says, as the first question made it.
 template <typename Job>
-Status run_contacts(sc_body& body, const sc_query& query, bool lists_all, const std::uint64_t* listed, Job& job) {
+Status run_contacts(sc_body& body, const sc_query& query, bool lists_all, bool is_round, Job& job) {
   job.target = query.target;
   job.scratch = body.scratch;
   job.scratch_words = body.scratch_words;
-  job.parts = body.parts.data;
-  job.part_capacity = body.parts.size;
+  job.parts = is_round ? nullptr : body.parts.data;
+  job.part_capacity = is_round ? 0 : body.parts.size;
   if (lists_all) {
     job.spheres = body.contact_spheres.data;
     job.sphere_capacity = body.contact_spheres.size;
     job.triangles = body.triangles.data;
     job.triangle_capacity = body.triangles.size;
-    job.listed_parts = listed;
   }
   const Status status = job.run();
   if (status != SC_OK && status != SC_OVERFLOW) {
@@ -86,11 +102,11 @@ Status run_contacts(sc_body& body, const sc_query& query, bool lists_all, const 
   return done();
 }
 
-// `listed`: of which parts triangles are listed; null: of all.
-Status find_contacts(sc_body& body, const sc_body* other, const sc_query& query, bool lists_all,
-                     const std::uint64_t* listed) {
+// A round asks about the pairs of parts that body.part_pairs says.
+Status find_contacts(sc_body& body, const sc_body* other, const sc_query& query, bool lists_all, bool is_round) {
   body.contacts = {};
   body.has_contacts = false;
+  const std::uint64_t* const part_pairs = is_round ? body.part_pairs : pairs_asked(body, other, query);
   if (other == nullptr) {
     SkinContactJob job;
     job.asset = &body.model->asset;
@@ -98,7 +114,8 @@ Status find_contacts(sc_body& body, const sc_body* other, const sc_query& query,
     job.skin_table = body.model->skin_table;
     job.scope = query.scope;
     job.filter = query.filter;
-    return run_contacts(body, query, lists_all, listed, job);
+    job.part_pairs = part_pairs;
+    return run_contacts(body, query, lists_all, is_round, job);
   }
   const Status room = check_room(body, *other, body_scratch_words(asset_of(body), asset_of(*other)));
   if (room != SC_OK) {
@@ -107,16 +124,17 @@ Status find_contacts(sc_body& body, const sc_body* other, const sc_query& query,
   BodyContactJob job;
   job.a = side_of(body, query.ignored_parts);
   job.b = side_of(*other, query.ignored_parts_of_other);
-  return run_contacts(body, query, lists_all, listed, job);
+  job.part_pairs = part_pairs;
+  return run_contacts(body, query, lists_all, is_round, job);
 }
 
 // Of a body with itself they are kept from question to question. Another body may be gone, with a new one in its place.
 Status know_contacts(sc_body& body, const sc_body* other, const sc_query& query) {
-  const bool is_kept = other == nullptr && query.filter == nullptr;
+  const bool is_kept = other == nullptr && query.filter == nullptr && query.part_pairs == nullptr;
   if (is_kept && body.has_contacts && body.contacts_scope == query.scope) {
     return done();
   }
-  const Status status = find_contacts(body, other, query, true, nullptr);
+  const Status status = find_contacts(body, other, query, true, false);
   body.has_contacts = is_kept && status == SC_OK;
   body.contacts_scope = query.scope;
   return status;
@@ -177,7 +195,7 @@ Status measure_in_rounds(sc_body& body, const sc_body* other, const sc_query& qu
   TableOfParts<PartContact> places;
   places.count_b = asset_of(other == nullptr ? body : *other).part_count();
   for (std::size_t next = 0; next < part_count;) {
-    std::fill(body.listed, body.listed + words_for(body.parts.size), std::uint64_t{0});
+    std::fill(body.part_pairs, body.part_pairs + words_for(body.parts.size), std::uint64_t{0});
     for (std::size_t triangles = 0; next < part_count; ++next) {
       const PartContact& parts = body.parts[next];
       if (triangles > 0 && triangles + parts.triangle_pairs > body.triangles.size) {
@@ -185,9 +203,9 @@ Status measure_in_rounds(sc_body& body, const sc_body* other, const sc_query& qu
       }
       triangles += parts.triangle_pairs;
       const std::size_t place = places.place(parts.part_a, parts.part_b, other == nullptr);
-      body.listed[place / 64] |= std::uint64_t{1} << place % 64;
+      body.part_pairs[place / 64] |= std::uint64_t{1} << place % 64;
     }
-    Status status = find_contacts(body, other, query, true, body.listed);
+    Status status = find_contacts(body, other, query, true, true);
     status = status == SC_OK ? measure_contacts(body, other, query, list, total) : status;
     if (status != SC_OK) {
       return status;
@@ -231,7 +249,7 @@ sc_status sc_find_contacts(sc_body* body, const sc_body* other, const sc_query* 
   }
   const sc_query of = query_of(query);
   status =
-      of.detail == SC_DETAIL_FULL ? know_contacts(*body, other, of) : find_contacts(*body, other, of, false, nullptr);
+      of.detail == SC_DETAIL_FULL ? know_contacts(*body, other, of) : find_contacts(*body, other, of, false, false);
   if (status == SC_OK) {
     *found = body->contacts;
   }
@@ -309,13 +327,16 @@ sc_status sc_find_steps(sc_body* body, const sc_body* other, const sc_query* que
   if (status != SC_OK) {
     return status;
   }
+  if (query != nullptr && query->part_pairs != nullptr) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_QUERY);
+  }
   if (!body->before.is_given || (other != nullptr && !other->before.is_given)) {
     return refuse(SC_NOT_OPEN, SC_FIELD_BODIES);
   }
   const sc_query of = query_of(query);
   StepJob job;
   const auto motion_of = [](const sc_body& from, const std::uint64_t* ignored_parts) {
-    sc_motion motion;
+    Motion motion;
     motion.body = side_of(from, ignored_parts);
     motion.body.pose = from.before.pose;
     motion.end = from.now.pose;
@@ -328,7 +349,7 @@ sc_status sc_find_steps(sc_body* body, const sc_body* other, const sc_query* que
   if (body->steps.size == 0) {
     return refuse(SC_TOO_SMALL, SC_FIELD_BODIES);
   }
-  status = other == nullptr ? done() : check_room(*body, *other, sc_step_scratch_words(&job.a, &job.b));
+  status = other == nullptr ? done() : check_room(*body, *other, step_scratch_words(&job.a, &job.b));
   if (status != SC_OK) {
     return status;
   }

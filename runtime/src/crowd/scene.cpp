@@ -9,7 +9,7 @@
 #include "pairs/filter.h"
 #include "pose/transform.h"
 #include "skin/collector.h"
-#include "spherechain/bodies.h"
+#include "spherechain/crowd.h"
 
 namespace spherechain {
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "depth/posed_skin.h"
-#include "spherechain/skin_contacts.h"
+#include "skin/contact_jobs.h"
 
 namespace spherechain {
 

@@ -6,12 +6,12 @@
 #include "asset/memory.h"
 #include "asset/status.h"
 #include "depth/measure.h"
+#include "depth/penetration_jobs.h"
 #include "depth/posed_skin.h"
 #include "depth/rule.h"
 #include "pairs/filter.h"
 #include "simd/simd.h"
 #include "skin/scene_setup.h"
-#include "spherechain/bodies.h"
 
 namespace spherechain {
 namespace {
@@ -213,7 +213,7 @@ Status check(const FloorJob& job, Target& resolved, Surface& surface) {
       return status;
     }
   }
-  if (job.scratch_words < sc_floor_scratch_words(job.body.asset)) {
+  if (job.scratch_words < floor_scratch_words(job.body.asset)) {
     return refuse(SC_TOO_SMALL, SC_FIELD_SCRATCH);
   }
   if (!(std::abs(length(to_double(job.up)) - 1) <= kUnitError) || !std::isfinite(job.height)) {
@@ -227,31 +227,22 @@ Status check(const FloorJob& job, Target& resolved, Surface& surface) {
   }
   const BodyRanges body(job.body);
   return any_shared({range_of(Span<Penetration>{job.penetrations, job.penetration_capacity}),
-                     range_of(Span<std::uint64_t>{job.scratch, sc_floor_scratch_words(job.body.asset)})},
+                     range_of(Span<std::uint64_t>{job.scratch, floor_scratch_words(job.body.asset)})},
                     {body.vertices, body.bones, body.morph_weights, body.skin_table, body.ignored_parts})
              ? refuse(SC_ALIASED, SC_FIELD_OUTPUT)
              : done();
 }
 
 }  // namespace
-}  // namespace spherechain
-
-using namespace spherechain;
-
-extern "C" {
-
-size_t sc_floor_scratch_words(const sc_asset* asset) noexcept {
+std::size_t floor_scratch_words(const Asset* asset) noexcept {
   return asset == nullptr || !has_skin(view_of(*asset)) ? 0 : floor_words(view_of(*asset));
 }
 
-sc_status sc_find_floor_penetrations(sc_floor_job* job) noexcept {
-  if (job == nullptr) {
-    return refuse(SC_NULL, SC_FIELD_NONE);
-  }
+Status FloorJob::run() noexcept {
   Target resolved{};
   Surface surface;
-  const Status status = check(*job, resolved, surface);
-  return status == SC_OK ? Measurer(view_of(*job->body.asset), surface, *job).run(resolved, *job) : status;
+  const Status status = check(*this, resolved, surface);
+  return status == SC_OK ? Measurer(view_of(*this->body.asset), surface, *this).run(resolved, *this) : status;
 }
 
-}  // extern "C"
+}  // namespace spherechain

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "spherechain/penetrations.h"
+#include "depth/penetration_jobs.h"
 
 #include "asset/status.h"
 #include "depth/measure.h"
@@ -7,7 +7,6 @@
 #include "pairs/filter.h"
 #include "simd/simd.h"
 #include "skin/scene_setup.h"
-#include "spherechain/bodies.h"
 
 namespace spherechain {
 namespace {
@@ -26,7 +25,7 @@ bool is_aliased(const BodyPenetrationJob& job) {
   const BodyRanges a(job.a), b(job.b);
   return any_shared({range_of(Span<Penetration>{job.penetrations, job.penetration_capacity}),
                      range_of(Span<std::uint64_t>{
-                         job.scratch, sc_body_penetration_scratch_words(job.a.asset, job.b.asset, job.contact_count)})},
+                         job.scratch, body_penetration_scratch_words(job.a.asset, job.b.asset, job.contact_count)})},
                     {a.vertices, a.bones, a.morph_weights, a.skin_table, b.vertices, b.bones, b.morph_weights,
                      b.skin_table, range_of(Span<const TriangleContact>{job.contacts, job.contact_count}),
                      range_of(Span<const Penetration>{job.previous, job.previous_count})});
@@ -66,7 +65,7 @@ Meeting meeting_of(const Job& job, const Meeting::Side& a, const Meeting::Side& 
   return out;
 }
 
-Status run(PenetrationJob& job) {
+Status measure(PenetrationJob& job) {
   Surface surface;
   const Status skin = check_skin(job.asset, job.pose, job.skin_table, surface);
   if (skin != SC_OK) {
@@ -99,7 +98,7 @@ Status run(PenetrationJob& job) {
   return contacts == SC_OK ? measure(meeting, job.penetration_count) : contacts;
 }
 
-Status run(BodyPenetrationJob& job) {
+Status measure(BodyPenetrationJob& job) {
   Surface surface_a, surface_b;
   const Status skins[] = {check_skin(job.a.asset, job.a.pose, job.a.skin_table, surface_a),
                           check_skin(job.b.asset, job.b.pose, job.b.skin_table, surface_b)};
@@ -123,30 +122,20 @@ Status run(BodyPenetrationJob& job) {
 }
 
 }  // namespace
-}  // namespace spherechain
-
-using namespace spherechain;
-
-extern "C" {
-
-size_t sc_penetration_scratch_words(const sc_asset* asset, size_t contact_count) noexcept {
+std::size_t penetration_scratch_words(const Asset* asset, std::size_t contact_count) noexcept {
   return asset == nullptr || !has_skin(view_of(*asset))
              ? 0
              : measure_words(view_of(*asset), view_of(*asset), true, contact_count);
 }
 
-size_t sc_body_penetration_scratch_words(const sc_asset* a, const sc_asset* b, size_t contact_count) noexcept {
+std::size_t body_penetration_scratch_words(const Asset* a, const Asset* b, std::size_t contact_count) noexcept {
   return a == nullptr || b == nullptr || !has_skin(view_of(*a)) || !has_skin(view_of(*b))
              ? 0
              : measure_words(view_of(*a), view_of(*b), false, contact_count);
 }
 
-sc_status sc_measure_penetrations(sc_penetration_job* job) noexcept {
-  return job == nullptr ? refuse(SC_NULL, SC_FIELD_NONE) : run(*job);
-}
+Status PenetrationJob::run() noexcept { return measure(*this); }
 
-sc_status sc_measure_body_penetrations(sc_body_penetration_job* job) noexcept {
-  return job == nullptr ? refuse(SC_NULL, SC_FIELD_NONE) : run(*job);
-}
+Status BodyPenetrationJob::run() noexcept { return measure(*this); }
 
-}  // extern "C"
+}  // namespace spherechain

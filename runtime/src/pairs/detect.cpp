@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "spherechain/detect.h"
+#include "pairs/detect_job.h"
 
 #include <algorithm>
 
@@ -170,33 +170,20 @@ void PairOutput::finish(Target resolved, const TilePlace& place, FoundPairs& fou
   std::sort(list_.begin(), list_.begin() + std::min(count_, list_.size));
 }
 
-}  // namespace spherechain
-
-using namespace spherechain;
-
-extern "C" {
-
-size_t sc_pair_words(const sc_asset* asset) noexcept {
-  return sc_asset_is_open(asset) != 0 ? words_for(pairs_of(view_of(*asset).spheres().size)) : 0;
-}
-
-sc_status sc_detect(sc_detect_job* job) noexcept {
-  if (job == nullptr) {
-    return refuse(SC_NULL, SC_FIELD_NONE);
-  }
+Status DetectJob::run() noexcept {
   Target resolved{};
   Scene scene;
-  const Status status = check(*job, resolved, scene);
+  const Status status = check(*this, resolved, scene);
   if (status != SC_OK) {
     return status;
   }
-  const Span<std::uint64_t> bits{job->bits, job->bit_words};
-  std::fill(bits.begin(), bits.end(), std::uint64_t{0});
-  PairOutput output({job->pairs, job->pair_capacity}, bits);
+  const Span<std::uint64_t> out{bits, bit_words};
+  std::fill(out.begin(), out.end(), std::uint64_t{0});
+  PairOutput output({pairs, pair_capacity}, out);
   detect(resolved, scene, output);
-  job->pair_count = output.count();
+  pair_count = output.count();
   // A caller who only wants the count brings no list.
-  return job->pair_capacity > 0 && output.count() > job->pair_capacity ? refuse(SC_OVERFLOW, SC_FIELD_PAIRS) : done();
+  return pair_capacity > 0 && pair_count > pair_capacity ? refuse(SC_OVERFLOW, SC_FIELD_PAIRS) : done();
 }
 
-}  // extern "C"
+}  // namespace spherechain

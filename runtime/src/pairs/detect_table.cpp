@@ -118,18 +118,12 @@ Status read_detect_table(const AssetView& asset, Radius radius, const std::uint6
   return done();
 }
 
-}  // namespace spherechain
-
-using namespace spherechain;
-
-extern "C" {
-
-size_t sc_detect_table_words(const sc_asset* asset) noexcept {
+std::size_t detect_table_words(const Asset* asset) noexcept {
   return sc_asset_is_open(asset) != 0 ? Content(nullptr, view_of(*asset)).size : 0;
 }
 
-sc_status sc_prepare_detect(const sc_asset* asset, sc_radius radius, const sc_filter* filter, uint64_t* words,
-                            size_t word_count) noexcept {
+Status prepare_detect(const Asset* asset, Radius radius, const Filter* filter, uint64_t* words,
+                      size_t word_count) noexcept {
   if (sc_asset_is_open(asset) == 0) {
     return refuse(asset == nullptr ? SC_NULL : SC_NOT_OPEN, SC_FIELD_ASSET);
   }
@@ -140,4 +134,4 @@ sc_status sc_prepare_detect(const sc_asset* asset, sc_radius radius, const sc_fi
   return status;
 }
 
-}  // extern "C"
+}  // namespace spherechain

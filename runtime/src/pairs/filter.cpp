@@ -27,6 +27,14 @@ using namespace spherechain;
 
 extern "C" {
 
+size_t sc_pair_words(const sc_asset* asset) noexcept {
+  return sc_asset_is_open(asset) != 0 ? words_for(pairs_of(view_of(*asset).spheres().size)) : 0;
+}
+
+size_t sc_part_words(const sc_asset* asset) noexcept {
+  return sc_asset_is_open(asset) != 0 ? words_for(view_of(*asset).part_count()) : 0;
+}
+
 sc_status sc_reset_filter(const sc_asset* asset, sc_filter* filter) noexcept {
   const Status status = check_edit(asset, filter);
   if (status != SC_OK) {

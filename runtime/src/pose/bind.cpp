@@ -80,6 +80,45 @@ void move(const BoneMatrices& bones, std::size_t bone, const Vec3& p, double (&o
 }
 
 }  // namespace
+Status check_rest_pose(const Asset& asset, const Pose& pose, char* message, std::size_t message_size) {
+  Message sentence(message, message_size);
+  const AssetView& view = view_of(asset);
+  const Status status = check_bones(view, pose);
+  if (status != SC_OK) {
+    sentence.wrong("%s: %s", sc_field_name(status.field), sc_code_text(status.code));
+    return status;
+  }
+  // All matrices are the model's own: each moves the body's middle, and points a height off, where the first one does.
+  const BoneMatrices bones = matrices_of(pose);
+  const AssetInfo info = view.info();
+  const float h = info.height;
+  const Vec3 o = info.origin;
+  const Vec3 points[] = {o, {o.x + h, o.y, o.z}, {o.x, o.y + h, o.z}, {o.x, o.y, o.z + h}};
+  double first[4][3], moved[3];
+  for (std::size_t i = 0; i < 4; ++i) {
+    move(bones, 0, points[i], first[i]);
+  }
+  double scale = 0;
+  for (std::size_t r = 0; r < 3; ++r) {
+    scale = std::max(scale, std::abs(first[2][r] - first[0][r]));
+  }
+  for (std::size_t b = 0; b < view.bone_count(); ++b) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      move(bones, b, points[i], moved);
+      for (std::size_t r = 0; r < 3; ++r) {
+        if (!(std::abs(moved[r] - first[i][r]) <= kTolerance * scale) && !view.bone(b).is_rest) {
+          sentence.wrong(
+              "bone \"%s\": its matrix is not that of \"%s\", as in the bind pose. Is this the bind pose? "
+              "Are layout, order and inverse bind matrices right?",
+              view.bone(b).name, view.bone(0).name);
+          return refuse(SC_OTHER_BIND, SC_FIELD_BONES);
+        }
+      }
+    }
+  }
+  return done();
+}
+
 }  // namespace spherechain
 
 using namespace spherechain;
@@ -185,50 +224,6 @@ sc_status sc_gather_bones(const sc_asset* asset, const uint32_t* joint_of_bone, 
       bones[12 * b + i] = joint_of_bone[b] == SC_NO_JOINT
                               ? static_cast<float>(row == column)
                               : from.data[joint_of_bone[b] * from.stride + row * from.row + column * from.column];
-    }
-  }
-  return done();
-}
-
-sc_status sc_check_rest_pose(const sc_asset* asset, const sc_pose* pose, char* message, size_t message_size) noexcept {
-  Message sentence(message, message_size);
-  if (asset == nullptr || pose == nullptr || sc_asset_is_open(asset) == 0) {
-    sentence.wrong("%s: null, or not open", pose == nullptr ? "pose" : "asset");
-    return refuse(asset == nullptr || pose == nullptr ? SC_NULL : SC_NOT_OPEN,
-                  pose == nullptr ? SC_FIELD_BONES : SC_FIELD_ASSET);
-  }
-  const AssetView& view = view_of(*asset);
-  const Status status = check_bones(view, *pose);
-  if (status != SC_OK) {
-    sentence.wrong("%s: %s", sc_field_name(status.field), sc_code_text(status.code));
-    return status;
-  }
-  // All matrices are the model's own: each moves the body's middle, and points a height off, where the first one does.
-  const BoneMatrices bones = matrices_of(*pose);
-  const AssetInfo info = view.info();
-  const float h = info.height;
-  const Vec3 o = info.origin;
-  const Vec3 points[] = {o, {o.x + h, o.y, o.z}, {o.x, o.y + h, o.z}, {o.x, o.y, o.z + h}};
-  double first[4][3], moved[3];
-  for (std::size_t i = 0; i < 4; ++i) {
-    move(bones, 0, points[i], first[i]);
-  }
-  double scale = 0;
-  for (std::size_t r = 0; r < 3; ++r) {
-    scale = std::max(scale, std::abs(first[2][r] - first[0][r]));
-  }
-  for (std::size_t b = 0; b < view.bone_count(); ++b) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      move(bones, b, points[i], moved);
-      for (std::size_t r = 0; r < 3; ++r) {
-        if (!(std::abs(moved[r] - first[i][r]) <= kTolerance * scale) && !view.bone(b).is_rest) {
-          sentence.wrong(
-              "bone \"%s\": its matrix is not that of \"%s\", as in the bind pose. Is this the bind pose? "
-              "Are layout, order and inverse bind matrices right?",
-              view.bone(b).name, view.bone(0).name);
-          return refuse(SC_OTHER_BIND, SC_FIELD_BONES);
-        }
-      }
     }
   }
   return done();

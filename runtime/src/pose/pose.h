@@ -44,6 +44,10 @@ inline const float* vertex_at(const float* positions, std::size_t index, std::si
 Status check_matrices(const Pose& pose);
 // Whether the pose's bones and morph weights are what a job of this open asset needs.
 Status check_bones(const AssetView& asset, const Pose& pose);
+// Whether every bone's matrix is the same, the model's own, as it is in the bind pose. SC_OTHER_BIND: the message names
+// the first bone whose matrix moves the character otherwise, by more than a thousandth of its height.
+Status check_rest_pose(const Asset& asset, const Pose& pose, char* message, std::size_t message_size);
+
 // Whether the pose has `wanted` vertices, or the asset's.
 Status check_vertices(const Pose& pose, std::size_t wanted);
 inline Status check_vertices(const AssetView& asset, const Pose& pose) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Spheres from bones (refit/moments_kernel.cpp), or from the pivots' deformed corners.
-#include "spherechain/refit.h"
+#include "refit/refit_job.h"
 
 #include <cmath>
 
@@ -140,24 +140,19 @@ RefitInputs refit_inputs(const AssetView& asset, const Pose& pose, Radius radius
   return in;
 }
 
-}  // namespace spherechain
-
-using namespace spherechain;
-
-extern "C" sc_status sc_refit(const sc_refit_job* job) noexcept {
-  if (job == nullptr) {
-    return refuse(SC_NULL, SC_FIELD_NONE);
-  }
+Status RefitJob::run() const noexcept {
   Target resolved{};
-  const Status status = check(*job, resolved);
+  const Status status = check(*this, resolved);
   if (status != SC_OK) {
     return status;
   }
-  const AssetView& asset = view_of(*job->asset);
-  if (job->pose.bones != nullptr) {
-    refit_from_moments(refit_inputs(asset, job->pose, job->radius), resolved, job->spheres);
+  const AssetView& view = view_of(*asset);
+  if (pose.bones != nullptr) {
+    refit_from_moments(refit_inputs(view, pose, radius), resolved, spheres);
   } else {
-    refit_from_vertices(asset, job->pose, job->radius, job->spheres);
+    refit_from_vertices(view, pose, radius, spheres);
   }
   return done();
 }
+
+}  // namespace spherechain

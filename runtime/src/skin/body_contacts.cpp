@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "asset/memory.h"
 #include "asset/status.h"
+#include "depth/penetration_jobs.h"
 #include "pairs/filter.h"
 #include "simd/simd.h"
 #include "skin/collector.h"
 #include "skin/scene_setup.h"
-#include "spherechain/bodies.h"
 
 namespace spherechain {
 namespace {
@@ -15,7 +15,7 @@ bool is_aliased(const BodyContactJob& job) {
   return any_shared({range_of(Span<PartContact>{job.parts, job.part_capacity}),
                      range_of(Span<Pair>{job.spheres, job.sphere_capacity}),
                      range_of(Span<TriangleContact>{job.triangles, job.triangle_capacity}),
-                     range_of(Span<std::uint64_t>{job.scratch, sc_body_scratch_words(job.a.asset, job.b.asset)})},
+                     range_of(Span<std::uint64_t>{job.scratch, body_scratch_words(job.a.asset, job.b.asset)})},
                     {a.vertices, a.bones, a.morph_weights, a.skin_table, a.ignored_parts, b.vertices, b.bones,
                      b.morph_weights, b.skin_table, b.ignored_parts});
 }
@@ -34,7 +34,7 @@ Status check(const BodyContactJob& job, Target& resolved, Surface& surface_a, Su
       return status;
     }
   }
-  if (job.scratch_words < sc_body_scratch_words(job.a.asset, job.b.asset)) {
+  if (job.scratch_words < body_scratch_words(job.a.asset, job.b.asset)) {
     return refuse(SC_TOO_SMALL, SC_FIELD_SCRATCH);
   }
   if (!resolve_target(job.target, resolved)) {
@@ -44,62 +44,45 @@ Status check(const BodyContactJob& job, Target& resolved, Surface& surface_a, Su
 }
 
 }  // namespace
-}  // namespace spherechain
-
-using namespace spherechain;
-
-extern "C" {
-
-size_t sc_body_scratch_words(const sc_asset* a, const sc_asset* b) noexcept {
+std::size_t body_scratch_words(const Asset* a, const Asset* b) noexcept {
   return a == nullptr || b == nullptr ? 0 : body_scratch_words(view_of(*a), view_of(*b));
 }
 
-size_t sc_part_words(const sc_asset* asset) noexcept {
-  return asset == nullptr || !view_of(*asset).is_open() ? 0 : words_for(view_of(*asset).part_count());
-}
-
-sc_status sc_find_body_contacts(sc_body_contact_job* job) noexcept {
-  if (job == nullptr) {
-    return refuse(SC_NULL, SC_FIELD_NONE);
-  }
+Status BodyContactJob::run() noexcept {
   Target resolved{};
   Surface surface_a, surface_b;
-  const Status status = check(*job, resolved, surface_a, surface_b);
+  const Status status = check(*this, resolved, surface_a, surface_b);
   if (status != SC_OK) {
     return status;
   }
-  WordMemory memory(job->scratch);
-  const AssetView &asset_a = view_of(*job->a.asset), &asset_b = view_of(*job->b.asset);
-  ContactScene a = scene_of(asset_a, surface_a, job->a.pose, nullptr, memory);
-  ContactScene b = scene_of(asset_b, surface_b, job->b.pose, nullptr, memory);
-  a.first_only = job->spheres_only != 0;
-  bound_bones_of_two(asset_a, a, asset_b, b, job->a.pose, job->b.pose, memory);
-  PartTable parts;
-  parts.take(memory, asset_a.part_count(), asset_b.part_count(), false);
-  parts.clear();
-  ContactCollector collector({&surface_a, job->a.ignored_parts}, {&surface_b, job->b.ignored_parts}, parts,
-                             ContactLists::of(*job));
-  find_candidates(resolved, {a, b, false}, collector);
+  WordMemory memory(scratch);
+  const AssetView &asset_a = view_of(*a.asset), &asset_b = view_of(*b.asset);
+  ContactScene scene_a = scene_of(asset_a, surface_a, a.pose, nullptr, memory);
+  ContactScene scene_b = scene_of(asset_b, surface_b, b.pose, nullptr, memory);
+  scene_a.first_only = spheres_only != 0;
+  bound_bones_of_two(asset_a, scene_a, asset_b, scene_b, a.pose, b.pose, memory);
+  PartTable table;
+  table.take(memory, asset_a.part_count(), asset_b.part_count(), false);
+  table.clear();
+  ContactCollector collector({&surface_a, a.ignored_parts}, {&surface_b, b.ignored_parts}, table,
+                             ContactLists::of(*this));
+  find_candidates(resolved, {scene_a, scene_b, false}, collector);
   ContactCounts counts{};
   const Status found = collector.finish(counts);
-  counts.copy_to(*job);
+  counts.copy_to(*this);
   return found;
 }
 
-sc_status sc_bound_body(const sc_job_body* body, sc_vec3* low, sc_vec3* high) noexcept {
-  if (body == nullptr || low == nullptr || high == nullptr) {
-    return refuse(SC_NULL, body == nullptr ? SC_FIELD_NONE : SC_FIELD_OUTPUT);
-  }
+Status bound_body(const JobBody& body, Vec3& low, Vec3& high) noexcept {
   Surface surface;
-  const Status status = check_skin(body->asset, body->pose, body->skin_table, surface);
+  const Status status = check_skin(body.asset, body.pose, body.skin_table, surface);
   if (status == SC_OK) {
-    const Bounds3 bounds = body->pose.bones != nullptr
-                               ? bound_bones(view_of(*body->asset), surface, body->pose, nullptr)
-                               : bound_vertices(surface, body->pose);
-    *low = {bounds.low[0], bounds.low[1], bounds.low[2]};
-    *high = {bounds.high[0], bounds.high[1], bounds.high[2]};
+    const Bounds3 bounds = body.pose.bones != nullptr ? bound_bones(view_of(*body.asset), surface, body.pose, nullptr)
+                                                      : bound_vertices(surface, body.pose);
+    low = {bounds.low[0], bounds.low[1], bounds.low[2]};
+    high = {bounds.high[0], bounds.high[1], bounds.high[2]};
   }
   return status;
 }
 
-}  // extern "C"
+}  // namespace spherechain

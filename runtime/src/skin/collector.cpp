@@ -28,8 +28,18 @@ bool ContactCollector::is_left_out(const Candidate& candidate) const {
                   : a_.ignores(candidate.triangle_a) || b_.ignores(candidate.triangle_b);
 }
 
+bool ContactCollector::is_asked(const Candidate& candidate) const {
+  if (part_pairs_ == nullptr) {
+    return true;
+  }
+  const std::uint32_t a = a_.surface->parts[candidate.triangle_a], b = b_.surface->parts[candidate.triangle_b];
+  const std::size_t place =
+      are_one_ ? part_table_.place(std::min(a, b), std::max(a, b), true) : part_table_.place(a, b, false);
+  return (part_pairs_[place / 64] >> place % 64 & 1) != 0;
+}
+
 // The box is of corners alone: the same in whatever order contacts are found.
-std::size_t ContactCollector::add_parts(const TriangleContact& of, const Candidate& candidate) {
+void ContactCollector::add_parts(const TriangleContact& of, const Candidate& candidate) {
   const std::uint32_t low = are_one_ ? std::min(of.part_a, of.part_b) : of.part_a;
   const std::uint32_t high = are_one_ ? std::max(of.part_a, of.part_b) : of.part_b;
   bool is_new = false;
@@ -44,12 +54,11 @@ std::size_t ContactCollector::add_parts(const TriangleContact& of, const Candida
       contact.high = {std::max(contact.high.x, p.x), std::max(contact.high.y, p.y), std::max(contact.high.z, p.z)};
     }
   }
-  return part_table_.place(low, high, are_one_);
 }
 
 bool ContactCollector::decide(const Candidate& candidate) {
   const TriangleCorners *a = &candidate.a, *b = &candidate.b;
-  if (is_left_out(candidate) || (!candidate.meets && !triangles_intersect(*a, *b))) {
+  if (is_left_out(candidate) || !is_asked(candidate) || (!candidate.meets && !triangles_intersect(*a, *b))) {
     return false;
   }
   TriangleContact contact{};
@@ -74,10 +83,7 @@ bool ContactCollector::decide(const Candidate& candidate) {
   if (spheres_only_) {
     return true;
   }
-  const std::size_t place = add_parts(contact, candidate);
-  if (listed_ != nullptr && (listed_[place / 64] >> place % 64 & 1) == 0) {
-    return true;
-  }
+  add_parts(contact, candidate);
   if (triangles_.is_wanted()) {
     const Segment segment = crossing_segment(*a, *b);
     contact.from = segment.from;

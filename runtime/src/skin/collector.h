@@ -5,9 +5,9 @@
 #include <cstddef>
 
 #include "asset/span.h"
+#include "skin/contact_jobs.h"
 #include "skin/left_out.h"
 #include "skin/scene_setup.h"
-#include "spherechain/skin_contacts.h"
 
 namespace spherechain {
 
@@ -53,7 +53,7 @@ struct ContactLists {
   Span<Pair> spheres;
   Span<TriangleContact> triangles;
   bool spheres_only;
-  const std::uint64_t* listed = nullptr;  // a bit for each place of PartTable: of which parts triangles are listed
+  const std::uint64_t* part_pairs = nullptr;  // a bit for each place of PartTable that counts; null: all count
 
   template <typename Job>
   static ContactLists of(const Job& job) {
@@ -61,7 +61,7 @@ struct ContactLists {
             {job.spheres, job.sphere_capacity},
             {job.triangles, job.triangle_capacity},
             job.spheres_only != 0,
-            job.listed_parts};
+            job.part_pairs};
   }
 };
 struct ContactCounts {
@@ -100,11 +100,12 @@ class ContactCollector {
         triangles_(lists.triangles),
         spheres_(lists.spheres),
         spheres_only_(lists.spheres_only),
-        listed_(lists.listed) {}
+        part_pairs_(lists.part_pairs) {}
 
   void end_spheres();
   bool is_left_out(const Candidate& candidate) const;
-  std::size_t add_parts(const TriangleContact& contact, const Candidate& candidate);  // their place
+  bool is_asked(const Candidate& candidate) const;
+  void add_parts(const TriangleContact& contact, const Candidate& candidate);
   std::size_t list_parts() const;
 
   Skin a_, b_;
@@ -114,7 +115,7 @@ class ContactCollector {
   LeastEntries<TriangleContact> triangles_;
   LeastEntries<Pair> spheres_;
   bool spheres_only_, touch_ = false;
-  const std::uint64_t* listed_;
+  const std::uint64_t* part_pairs_;
   Pair current_{};
 };
 

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <cstring>
 
+#include "depth/penetration_jobs.h"
 #include "pose/pose.h"
 #include "skin/scene.h"
-#include "spherechain/bodies.h"
 
 namespace spherechain {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "spherechain/skin_contacts.h"
+#include "skin/contact_jobs.h"
 
 #include "asset/memory.h"
 #include "asset/status.h"
@@ -72,42 +72,33 @@ Status check(const SkinContactJob& job, Target& resolved, Surface& surface) {
 }
 
 }  // namespace
-}  // namespace spherechain
-
-using namespace spherechain;
-
-extern "C" {
-
-size_t sc_skin_scratch_words(const sc_asset* asset) noexcept {
+std::size_t skin_scratch_words(const Asset* asset) noexcept {
   return asset == nullptr ? 0 : skin_scratch_words(view_of(*asset));
 }
 
-sc_status sc_find_skin_contacts(sc_skin_contact_job* job) noexcept {
-  if (job == nullptr) {
-    return refuse(SC_NULL, SC_FIELD_NONE);
-  }
+Status SkinContactJob::run() noexcept {
   Target resolved{};
   Surface surface;
-  const Status status = check(*job, resolved, surface);
+  const Status status = check(*this, resolved, surface);
   if (status != SC_OK) {
     return status;
   }
-  const AssetView& asset = view_of(*job->asset);
-  WordMemory memory(job->scratch);
-  ContactScene scene = scene_of(asset, surface, job->pose, job->filter, memory);
-  scene.apart = job->scope != SC_SCOPE_NEIGHBOURS;
-  scene.neighbours = job->scope != SC_SCOPE_APART || job->candidates != nullptr;
-  scene.candidates = {job->candidates, job->candidate_count};
-  scene.first_only = job->spheres_only != 0;
-  PartTable parts;
-  parts.take(memory, asset.part_count(), asset.part_count(), true);
-  parts.clear();
-  ContactCollector collector(surface, parts, ContactLists::of(*job));
+  const AssetView& view = view_of(*asset);
+  WordMemory memory(scratch);
+  ContactScene scene = scene_of(view, surface, pose, filter, memory);
+  scene.apart = scope != SC_SCOPE_NEIGHBOURS;
+  scene.neighbours = scope != SC_SCOPE_APART || candidates != nullptr;
+  scene.candidates = {candidates, candidate_count};
+  scene.first_only = spheres_only != 0;
+  PartTable table;
+  table.take(memory, view.part_count(), view.part_count(), true);
+  table.clear();
+  ContactCollector collector(surface, table, ContactLists::of(*this));
   find_candidates(resolved, {scene, scene, true}, collector);
   ContactCounts counts{};
   const Status found = collector.finish(counts);
-  counts.copy_to(*job);
+  counts.copy_to(*this);
   return found;
 }
 
-}  // extern "C"
+}  // namespace spherechain

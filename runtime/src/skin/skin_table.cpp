@@ -9,9 +9,9 @@
 #include "asset/memory.h"
 #include "asset/status.h"
 #include "asset/stream.h"
+#include "skin/contact_jobs.h"
 #include "skin/covered.h"
 #include "skin/double3.h"
-#include "spherechain/skin_contacts.h"
 
 namespace spherechain {
 namespace {
@@ -428,17 +428,11 @@ Status read_skin_table(const AssetView& asset, const std::uint64_t* words, Surfa
   return done();
 }
 
-}  // namespace spherechain
-
-using namespace spherechain;
-
-extern "C" {
-
-size_t sc_skin_table_words(const sc_asset* asset) noexcept {
+std::size_t skin_table_words(const Asset* asset) noexcept {
   return asset == nullptr ? 0 : skin_table_words(view_of(*asset));
 }
 
-sc_status sc_prepare_skin(const sc_asset* asset, uint64_t* words, size_t word_count) noexcept {
+Status prepare_skin(const Asset* asset, std::uint64_t* words, std::size_t word_count) noexcept {
   if (asset == nullptr || words == nullptr) {
     return refuse(SC_NULL, asset == nullptr ? SC_FIELD_ASSET : SC_FIELD_SKIN_TABLE);
   }
@@ -464,4 +458,4 @@ sc_status sc_prepare_skin(const sc_asset* asset, uint64_t* words, size_t word_co
   return done();
 }
 
-}  // extern "C"
+}  // namespace spherechain

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The asset's skin, expanded so that kernels read it side by side: what sc_prepare_skin() makes of the packed one.
+// The asset's skin, expanded so that kernels read it side by side: what prepare_skin() makes of the packed one.
 #pragma once
 
 #include <cstddef>
@@ -61,7 +61,7 @@ inline constexpr std::uint32_t kNoPlace = 0xFFFFFFFF;
 // A vertex stands for all source vertices that have its rest position and move as it does; a corner is the slot of a
 // vertex in its cluster. Two triangles are neighbours where a corner's weld is the same. Groups are of eight clusters.
 struct Surface {
-  // In the caller's words, which sc_prepare_skin() alone writes.
+  // In the caller's words, which prepare_skin() alone writes.
   Span<std::uint32_t> triangles;            // the source's numbers, by sphere, in it by cluster
   Span<Cluster> clusters;                   // by sphere
   Span<std::uint32_t> first_clusters;       // a sphere's, and the end

@@ -88,11 +88,11 @@ double norm_of(const double (&m)[3][4]) {
   return std::sqrt(sum);
 }
 
-std::uint32_t joint_of(const sc_motion& motion, std::size_t bone) {
+std::uint32_t joint_of(const Motion& motion, std::size_t bone) {
   return motion.joint_of_bone == nullptr ? static_cast<std::uint32_t>(bone) : motion.joint_of_bone[bone];
 }
 
-Status check_joints(const sc_motion& motion, const AssetView& asset) {
+Status check_joints(const Motion& motion, const AssetView& asset) {
   if (motion.start_joints == nullptr || motion.end_joints == nullptr) {
     return refuse(SC_NULL, SC_FIELD_JOINTS);
   }
@@ -133,7 +133,7 @@ Status check_joints(const sc_motion& motion, const AssetView& asset) {
 
 }  // namespace
 
-Status check_motion(const sc_motion& motion, Surface& surface) {
+Status check_motion(const Motion& motion, Surface& surface) {
   if (motion.blend != SC_BLEND_LINEAR && motion.blend != SC_BLEND_SLERP && motion.blend != SC_BLEND_NLERP) {
     return refuse(SC_BAD_VALUE, SC_FIELD_BLEND);
   }
@@ -171,7 +171,7 @@ void BodyMotion::take(WordMemory& memory, const AssetView& asset, std::size_t jo
   }
 }
 
-void BodyMotion::start(const sc_motion& motion, const AssetView& asset, const Surface& surface) {
+void BodyMotion::start(const Motion& motion, const AssetView& asset, const Surface& surface) {
   motion_ = &motion;
   asset_ = &asset;
   surface_ = &surface;

@@ -9,7 +9,7 @@
 #include "pose/transform.h"
 #include "skin/double3.h"
 #include "skin/skin_table.h"
-#include "spherechain/steps.h"
+#include "step/step_job.h"
 
 namespace spherechain {
 
@@ -35,7 +35,7 @@ class BodyMotion {
  public:
   void take(WordMemory& memory, const AssetView& asset, std::size_t joint_count);
   // Of a checked motion.
-  void start(const sc_motion& motion, const AssetView& asset, const Surface& surface);
+  void start(const Motion& motion, const AssetView& asset, const Surface& surface);
 
   // How far a vertex of the sphere is at most, during the whole step, from where it would be if it went straight from
   // the start to the end; infinite where that is not known. During a share h of the step, h * h of that.
@@ -58,7 +58,7 @@ class BodyMotion {
   void find_speeds();
   double stray_of_bone(std::size_t bone) const;
 
-  const sc_motion* motion_ = nullptr;
+  const Motion* motion_ = nullptr;
   const AssetView* asset_ = nullptr;
   const Surface* surface_ = nullptr;
   float* strays_ = nullptr;        // a sphere's
@@ -71,6 +71,6 @@ class BodyMotion {
 };
 
 // Are start and end what the motion says they are, and was the table made of the asset?
-Status check_motion(const sc_motion& motion, Surface& surface);
+Status check_motion(const Motion& motion, Surface& surface);
 
 }  // namespace spherechain

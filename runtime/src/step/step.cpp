@@ -9,9 +9,9 @@
 #include "pairs/filter.h"
 #include "simd/simd.h"
 #include "skin/collector.h"
-#include "spherechain/steps.h"
 #include "step/motion.h"
 #include "step/step_collector.h"
+#include "step/step_job.h"
 
 namespace spherechain {
 namespace {
@@ -25,7 +25,7 @@ constexpr std::size_t kClusterPairs = 1 << 14;  // listed at a time
 
 // A body, on its way through the pieces.
 struct Walker {
-  const sc_motion* motion = nullptr;
+  const Motion* motion = nullptr;
   const AssetView* asset = nullptr;
   Surface surface;
   BodyMotion way;
@@ -36,7 +36,7 @@ struct Walker {
   float* strays = nullptr;                                          // in a piece
   float *bones[2] = {}, *morph_weights[2] = {}, *vertices[2] = {};  // of `start` and of `end`, between the step's ends
 
-  void take(WordMemory& memory, const sc_motion& of_motion, bool is_alone) {
+  void take(WordMemory& memory, const Motion& of_motion, bool is_alone) {
     const AssetView& of = view_of(*of_motion.body.asset);
     const bool has_vertices = of_motion.body.pose.vertices != nullptr && !is_alone;
     const SkinSizes& sizes = of.skin().sizes;
@@ -79,7 +79,7 @@ struct Room {
   PartTable parts;
   Span<Pair> spheres, clusters;  // pairs of them
 
-  void take(WordMemory& memory, const sc_motion& of_a, const sc_motion* of_b) {
+  void take(WordMemory& memory, const Motion& of_a, const Motion* of_b) {
     const AssetView& asset_a = view_of(*of_a.body.asset);
     const bool is_one = of_b == nullptr;
     a.take(memory, of_a, is_one);
@@ -98,25 +98,12 @@ struct Room {
   }
 };
 
-std::size_t scratch_words(const sc_motion* a, const sc_motion* b) {
-  const auto is_one = [](const sc_motion& motion) {
-    return check_asset(motion.body.asset) == SC_OK && motion.joint_count <= kMostJoints;
-  };
-  if (a == nullptr || !is_one(*a) || (b != nullptr && !is_one(*b))) {
-    return 0;
-  }
-  WordMemory memory(nullptr);
-  Room room;
-  room.take(memory, *a, b);
-  return memory.used();
-}
-
 // What a job reads of a motion.
 struct MotionRanges {
   BodyRanges body;
   MemoryRange end_vertices, end_bones, end_weights, start_joints, end_joints, parents, joint_of_bone;
 
-  explicit MotionRanges(const sc_motion& motion)
+  explicit MotionRanges(const Motion& motion)
       : body(motion.body),
         end_vertices(range_of_vertices(view_of(*motion.body.asset), motion.end)),
         end_bones(range_of_bones(view_of(*motion.body.asset), motion.end)),
@@ -135,11 +122,13 @@ struct MotionRanges {
 
 bool has_two(const StepJob& job) { return job.b.body.asset != nullptr; }
 
-std::size_t scratch_words(const StepJob& job) { return scratch_words(&job.a, has_two(job) ? &job.b : nullptr); }
+std::size_t step_scratch_words(const StepJob& job) {
+  return step_scratch_words(&job.a, has_two(job) ? &job.b : nullptr);
+}
 
 bool is_aliased(const StepJob& job) {
   const MemoryRange contacts = range_of(Span<StepContact>{job.contacts, job.contact_capacity});
-  const MemoryRange scratch = range_of(Span<std::uint64_t>{job.scratch, scratch_words(job)});
+  const MemoryRange scratch = range_of(Span<std::uint64_t>{job.scratch, step_scratch_words(job)});
   bool shared = any_shared({contacts, scratch}, {range_of(job.filter)});
   for (const MemoryRange& out : {contacts, scratch}) {
     shared = shared || MotionRanges(job.a).overlaps(out) || (has_two(job) && MotionRanges(job.b).overlaps(out));
@@ -171,7 +160,7 @@ Status check(const StepJob& job, Target& resolved, Room& room) {
   if (!(job.tolerance >= 0) || !(job.tolerance <= 1)) {
     return refuse(SC_BAD_VALUE, SC_FIELD_TOLERANCE);
   }
-  if (job.scratch_words < scratch_words(job)) {
+  if (job.scratch_words < step_scratch_words(job)) {
     return refuse(SC_TOO_SMALL, SC_FIELD_SCRATCH);
   }
   if (!resolve_target(job.target, resolved)) {
@@ -237,7 +226,7 @@ class Step {
   }
 
  private:
-  static void begin(Walker& walker, const sc_motion& motion) {
+  static void begin(Walker& walker, const Motion& motion) {
     walker.motion = &motion;
     walker.asset = &view_of(*motion.body.asset);
     walker.way.start(motion, *walker.asset, walker.surface);
@@ -412,34 +401,35 @@ bool MovingClusters::put(std::size_t a, std::size_t b) {
   return true;
 }
 
-}  // namespace spherechain
-
-using namespace spherechain;
-
-extern "C" {
-
-size_t sc_step_scratch_words(const sc_motion* a, const sc_motion* b) noexcept { return scratch_words(a, b); }
-
-sc_status sc_find_step_contacts(sc_step_job* job) noexcept {
-  if (job == nullptr) {
-    return refuse(SC_NULL, SC_FIELD_NONE);
+std::size_t step_scratch_words(const Motion* a, const Motion* b) noexcept {
+  const auto is_one = [](const Motion& motion) {
+    return check_asset(motion.body.asset) == SC_OK && motion.joint_count <= kMostJoints;
+  };
+  if (a == nullptr || !is_one(*a) || (b != nullptr && !is_one(*b))) {
+    return 0;
   }
+  WordMemory memory(nullptr);
+  Room room;
+  room.take(memory, *a, b);
+  return memory.used();
+}
+
+Status StepJob::run() noexcept {
   Target resolved{};
   Room room;
-  const Status status = check(*job, resolved, room);
+  const Status status = check(*this, resolved, room);
   if (status != SC_OK) {
     return status;
   }
-  WordMemory memory(job->scratch);
-  const bool two = has_two(*job);
-  room.take(memory, job->a, two ? &job->b : nullptr);
-  Step step(*job, resolved, room);
+  WordMemory memory(scratch);
+  const bool two = has_two(*this);
+  room.take(memory, a, two ? &b : nullptr);
+  Step step(*this, resolved, room);
   if (const Status wild = step.begin(); wild != SC_OK) {
     return wild;
   }
-  job->contact_count = step.run();
-  return job->contact_count > job->contact_capacity && job->contacts != nullptr ? refuse(SC_OVERFLOW, SC_FIELD_CONTACTS)
-                                                                                : done();
+  contact_count = step.run();
+  return contact_count > contact_capacity && contacts != nullptr ? refuse(SC_OVERFLOW, SC_FIELD_CONTACTS) : done();
 }
 
-}  // extern "C"
+}  // namespace spherechain

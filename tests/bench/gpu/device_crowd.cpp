@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "spherechain/refit.h"
+#include "refit/refit_job.h"
 
 namespace spherechain::bench {
 namespace {

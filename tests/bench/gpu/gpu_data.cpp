@@ -13,7 +13,7 @@
 #include "play/asset_file.h"
 #include "play/play.h"
 #include "pose_file.h"
-#include "spherechain/refit.h"
+#include "refit/refit_job.h"
 #include "write/write.h"
 
 using namespace spherechain;

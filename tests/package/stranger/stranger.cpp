@@ -57,8 +57,28 @@ void call_filter(const Asset& asset) {
   expect(sc_reset_filter(&asset, &filter) == SC_OK, "reset filter");
   expect(sc_ignore_pair(&asset, &filter, 0, 1, 1) == SC_OK, "ignore pair");
   expect(sc_ignore_regions(&asset, &filter, 0, 1, 1) == SC_OK, "ignore regions");
-  std::vector<std::uint64_t> table(sc_detect_table_words(&asset));
-  expect(sc_prepare_detect(&asset, SC_RADIUS_DETECT, &filter, table.data(), table.size()) == SC_OK, "table");
+  std::vector<std::uint64_t> table(detect_table_words(&asset));
+  expect(prepare_detect(&asset, SC_RADIUS_DETECT, &filter, table.data(), table.size()) == SC_OK, "table");
+}
+
+std::size_t count_pairs(const Model& model, const Pose& pose) {
+  Body body(model);
+  expect(body.set_pose(pose) == SC_OK, "a pose");
+  const SpherePairs found = body.sphere_pairs();
+  expect(body.status() == SC_OK, "pairs");
+  return found.total;
+}
+
+// Two boxes in one place.
+void call_scene() {
+  const SceneBody bodies[2] = {};
+  std::uint64_t scratch[64];
+  SceneJob scene;
+  scene.bodies = bodies;
+  scene.body_count = 2;
+  scene.scratch = scratch;
+  scene.scratch_words = sc_scene_scratch_words(2);
+  expect(scene.scratch_words <= 64 && scene.run() == SC_OK && scene.pair_count == 1, "scene");
 }
 
 // A crowd of one.
@@ -73,18 +93,6 @@ void call_crowd(const Asset& asset, const Pose& pose, std::size_t pair_count) {
   expect(crowd.run() == SC_OK && crowd.pair_count == pair_count, "crowd");
 }
 
-void call_skin(const Asset& asset, const Pose& pose, std::size_t part_count) {
-  std::vector<std::uint64_t> table(sc_skin_table_words(&asset)), scratch(sc_skin_scratch_words(&asset));
-  expect(sc_prepare_skin(&asset, table.data(), table.size()) == SC_OK, "skin table");
-  SkinContactJob job;
-  job.asset = &asset;
-  job.pose = pose;
-  job.skin_table = table.data();
-  job.scratch = scratch.data();
-  job.scratch_words = scratch.size();
-  expect(job.run() == SC_OK && job.part_count == part_count && job.triangle_count >= part_count, "skin contacts");
-}
-
 void call_binding(const Asset& asset, const std::vector<Bone>& joints, const Pose& pose) {
   char message[160];
   std::vector<std::uint32_t> joint_of_bone(joints.size());
@@ -93,7 +101,7 @@ void call_binding(const Asset& asset, const std::vector<Bone>& joints, const Pos
          message);
   std::vector<float> bones(12 * joints.size());
   expect(sc_gather_bones(&asset, joint_of_bone.data(), &pose, bones.data()) == SC_OK, "gather bones");
-  expect(sc_check_rest_pose(&asset, &pose, message, sizeof message) == SC_OK, message);
+  expect(check_rest_pose(&asset, &pose, message, sizeof message) == SC_OK, message);
 }
 
 void call_model(const Model& model) {
@@ -151,32 +159,21 @@ int main(int argc, char** argv) {
   pose.bone_count = info.bone_count;
   pose.bone_layout = SC_ROWS_3X4;
 
-  std::vector<Sphere> spheres(info.sphere_count);
-  RefitJob refit;
-  refit.asset = &asset;
-  refit.pose = pose;
-  refit.spheres = spheres.data();
-  refit.sphere_capacity = spheres.size();
-  DetectJob detect;
-  detect.asset = &asset;
-  detect.spheres = spheres.data();
-  detect.sphere_count = spheres.size();
-  expect(refit.run() == SC_OK && detect.run() == SC_OK, "spheres");
-
   Model model(bytes.data(), size, joints.data(), joints.size(), SC_ROWS_3X4);
   expect(model && model.check_rest(pose) == SC_OK, model.message());
   if (!model) return failed;
   call_model(model);
   call_binding(asset, joints, pose);
-  call_crowd(asset, pose, detect.pair_count);
+  const std::size_t pair_count = count_pairs(model, pose);
+  call_crowd(asset, pose, pair_count);
   for (std::size_t b = 0; b < info.bone_count; ++b) {  // pull the body apart
     matrices[12 * b + 3] = 0.5F * static_cast<float>(b);
   }
   const std::size_t contact_count = call_body(model, pose);
-  call_skin(asset, pose, contact_count);
-  std::printf("%zu spheres, %zu pairs, %zu pairs of body parts\n", spheres.size(), detect.pair_count, contact_count);
+  std::printf("%zu spheres, %zu pairs, %zu pairs of body parts\n", info.sphere_count, pair_count, contact_count);
 
   call_accessors(asset);
   call_filter(asset);
+  call_scene();
   return failed;
 }

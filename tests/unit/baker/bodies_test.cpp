@@ -92,7 +92,7 @@ struct Ground {
 
 std::vector<Penetration> below(const Placed& prop, const Ground& ground) {
   const PreparedSkin table(*prop.body.asset);
-  std::vector<std::uint64_t> scratch(sc_floor_scratch_words(prop.body.asset));
+  std::vector<std::uint64_t> scratch(floor_scratch_words(prop.body.asset));
   FloorJob job;
   job.body = prop.body;
   job.body.skin_table = table.words.data();

@@ -13,10 +13,10 @@
 #include "filter/find_filter.h"
 #include "filter/joint_limits.h"
 #include "human.h"
+#include "pairs/detect_job.h"
 #include "play/skin_player.h"
 #include "refusal.h"
-#include "spherechain/detect.h"
-#include "spherechain/skin_contacts.h"
+#include "skin/contact_jobs.h"
 #include "temporary_folder.h"
 #include "tool.h"
 #include "wall_and_arm.h"
@@ -165,7 +165,7 @@ TEST_CASE("on a human, the parts found to touch are those of a search through th
     return out;
   };
   const RandomPoses poses(animated.character(), joints_of(asset));
-  std::vector<std::uint64_t> scratch(sc_skin_scratch_words(asset.handle()));
+  std::vector<std::uint64_t> scratch(spherechain::skin_scratch_words(asset.handle()));
   Random random(1);
   std::size_t most = 0;
   for (int i = 0; i < 30; ++i) {
@@ -236,7 +236,7 @@ TEST_CASE("filter writes what is read back, the same bytes each time, and idle p
     for (const auto& [key, value] : object.items()) CHECK_MESSAGE(contains(page, ("`" + key + "`").c_str()), key);
   }
   const BonePose pose(asset, animated.deformation(0));
-  std::vector<std::uint64_t> scratch(sc_skin_scratch_words(asset.handle()));
+  std::vector<std::uint64_t> scratch(spherechain::skin_scratch_words(asset.handle()));
   spherechain::SkinContactJob job;
   job.asset = asset.handle();
   job.pose = pose.pose();

@@ -14,8 +14,8 @@
 
 #include "baked_human.h"
 #include "motion/poses.h"
+#include "refit/refit_job.h"
 #include "segment/region_colours.h"
-#include "spherechain/refit.h"
 
 using namespace spherechain::baker;
 using Eigen::Affine3d;

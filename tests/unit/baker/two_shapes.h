@@ -6,9 +6,9 @@
 #include <functional>
 #include <vector>
 
+#include "depth/penetration_jobs.h"
 #include "pipeline/pipeline.h"
 #include "play/asset_file.h"
-#include "spherechain/penetrations.h"
 
 struct Shape {
   std::vector<spherechain::baker::Vec3> positions;

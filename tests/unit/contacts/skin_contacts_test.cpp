@@ -193,7 +193,7 @@ TEST_CASE("a list without room has the first triangles of the sorted list, and t
     const SkinContacts all = run(job);
     if (all.triangles.size() < 2) continue;
     ++shortened;
-    std::vector<std::uint64_t> scratch(sc_skin_scratch_words(job.asset));
+    std::vector<std::uint64_t> scratch(skin_scratch_words(job.asset));
     std::vector<TriangleContact> first(all.triangles.size() / 2);
     job.skin_table = human.asset.skin_table();
     job.scratch = scratch.data();

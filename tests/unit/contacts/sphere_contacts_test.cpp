@@ -55,7 +55,7 @@ std::vector<Pair> confirmed(const Pose& pose, const std::vector<Pair>& candidate
 // A job with memory of its own that lists as many pairs of spheres as `out` has room for.
 struct ShortJob : SkinContactJob {
   ShortJob(const SkinContactJob& job, std::vector<Pair>& out)
-      : SkinContactJob(job), memory(sc_skin_scratch_words(job.asset)) {
+      : SkinContactJob(job), memory(skin_scratch_words(job.asset)) {
     skin_table = moving_human().asset.skin_table();
     scratch = memory.data();
     scratch_words = memory.size();

@@ -8,6 +8,7 @@
 #include "jobs.h"
 #include "owned_filter.h"
 #include "palette.h"
+#include "pose/pose.h"
 #include "tiny_skin.h"
 
 namespace spherechain::test {
@@ -27,9 +28,9 @@ TEST_CASE("no job allocates, nor does opening or binding an asset, on any target
     std::vector<CrowdPair> crowd_pairs(2000);
     std::vector<PartContact> parts(15);
     std::vector<TriangleContact> triangles(100000);
-    std::vector<std::uint64_t> detect_table(sc_detect_table_words(&opened.asset));
-    std::vector<std::uint64_t> skin_table(sc_skin_table_words(&opened.asset));
-    std::vector<std::uint64_t> scratch(sc_skin_scratch_words(&opened.asset));
+    std::vector<std::uint64_t> detect_table(detect_table_words(&opened.asset));
+    std::vector<std::uint64_t> skin_table(skin_table_words(&opened.asset));
+    std::vector<std::uint64_t> scratch(skin_scratch_words(&opened.asset));
     std::vector<std::uint32_t> joint_of_bone(bones);
     std::vector<float> gathered(12 * bones);
     std::vector<sc_bone> joints;
@@ -63,7 +64,7 @@ TEST_CASE("no job allocates, nor does opening or binding an asset, on any target
     contacts.triangles = triangles.data();
     contacts.triangle_capacity = triangles.size();
     BodyContactJob meeting;
-    std::vector<std::uint64_t> meeting_scratch(sc_body_scratch_words(&opened.asset, &opened.asset));
+    std::vector<std::uint64_t> meeting_scratch(body_scratch_words(&opened.asset, &opened.asset));
     meeting.a.pose = meeting.b.pose = refit.pose;
     meeting.a.skin_table = meeting.b.skin_table = skin_table.data();
     meeting.scratch = meeting_scratch.data();
@@ -71,7 +72,7 @@ TEST_CASE("no job allocates, nor does opening or binding an asset, on any target
     meeting.triangles = triangles.data();
     meeting.triangle_capacity = 1000;
     BodyPenetrationJob measure;
-    std::vector<std::uint64_t> measure_scratch(sc_body_penetration_scratch_words(&opened.asset, &opened.asset, 1000));
+    std::vector<std::uint64_t> measure_scratch(body_penetration_scratch_words(&opened.asset, &opened.asset, 1000));
     measure.contacts = triangles.data();
     measure.scratch = measure_scratch.data();
     measure.scratch_words = measure_scratch.size();
@@ -90,11 +91,11 @@ TEST_CASE("no job allocates, nor does opening or binding an asset, on any target
     step.contacts = step_contacts.data();
     step.contact_capacity = step_contacts.size();
     step.a.body.asset = &opened.asset;
-    std::vector<std::uint64_t> step_scratch(sc_step_scratch_words(&step.a, nullptr));
+    std::vector<std::uint64_t> step_scratch(step_scratch_words(&step.a, nullptr));
     step.scratch = step_scratch.data();
     step.scratch_words = step_scratch.size();
     FloorJob ground;
-    std::vector<std::uint64_t> ground_scratch(sc_floor_scratch_words(&opened.asset));
+    std::vector<std::uint64_t> ground_scratch(floor_scratch_words(&opened.asset));
     ground.up = {0, 1, 0};
     ground.scratch = ground_scratch.data();
     ground.scratch_words = ground_scratch.size();
@@ -116,13 +117,13 @@ TEST_CASE("no job allocates, nor does opening or binding an asset, on any target
     run(sc_check_source(&asset, SC_WHOLE_SOURCE, tiny.rest.data(), tiny.parts.vertex_count, 12));
     run(sc_reset_filter(&asset, &owned.filter));
     run(sc_ignore_regions(&asset, &owned.filter, 0, 1, 1));
-    run(sc_prepare_detect(&asset, SC_RADIUS_DETECT, &owned.filter, detect_table.data(), detect_table.size()));
-    run(sc_prepare_skin(&asset, skin_table.data(), skin_table.size()));
+    run(prepare_detect(&asset, SC_RADIUS_DETECT, &owned.filter, detect_table.data(), detect_table.size()));
+    run(prepare_skin(&asset, skin_table.data(), skin_table.size()));
     run(sc_bind_joints(&asset, joints.data(), bones, SC_ROWS_3X4, joint_of_bone.data(), bones, message, 160));
     run(sc_gather_bones(&asset, joint_of_bone.data(), &refit.pose, gathered.data()));
     const Transform place{{1, 2, 3}, {0, 0, 0, 1}, {1, 1, 1}};
     run(sc_place_bones(&place, gathered.data(), bones));
-    const sc_status rest = sc_check_rest_pose(&asset, &refit.pose, message, 160);
+    const sc_status rest = check_rest_pose(asset, refit.pose, message, 160);
     meeting.a.asset = meeting.b.asset = step.a.body.asset = &asset;
     for (const Target target : supported_targets()) {
       refit.target = detect.target = crowd.target = contacts.target = target;
@@ -139,7 +140,7 @@ TEST_CASE("no job allocates, nor does opening or binding an asset, on any target
       measure.contact_count = std::min<std::size_t>(meeting.triangle_count, 1000);
       run(measure.run());
       run(ground.run());
-      for (SceneBody& body : scene_bodies) run(sc_bound_body(&meeting.a, &body.low, &body.high));
+      for (SceneBody& body : scene_bodies) run(bound_body(meeting.a, body.low, body.high));
       run(scene.run());
     }
     refit.pose = {};

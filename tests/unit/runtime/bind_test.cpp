@@ -10,6 +10,7 @@
 
 #include "jobs.h"
 #include "palette.h"
+#include "pose/pose.h"
 #include "random_poses.h"
 #include "tiny_skin.h"
 
@@ -221,7 +222,7 @@ TEST_CASE("in the bind pose all bones have the model's matrix; the first that ha
   Rig rig;
   const auto check = [&](const Pose& pose) {
     rig.message.assign(160, '\0');
-    const sc_status status = sc_check_rest_pose(&rig.opened->asset, &pose, rig.message.data(), rig.message.size());
+    const sc_status status = check_rest_pose(rig.opened->asset, pose, rig.message.data(), rig.message.size());
     rig.message.resize(rig.message.find('\0'));
     return status;
   };

@@ -71,7 +71,7 @@ struct Bounds {
   Bounds3 body;
 
   Bounds(const OpenedAsset& opened, const PreparedSkin& table, const Pose& pose, Target target, bool has_hulls)
-      : words(sc_skin_scratch_words(&opened.asset)),
+      : words(skin_scratch_words(&opened.asset)),
         memory(words.data()),
         scene(scene_of(opened.view(), table.surface, pose, nullptr, memory)) {
     REQUIRE((scene.has_hulls || !has_hulls));

@@ -15,8 +15,8 @@ namespace {
 using Table = std::vector<std::uint64_t>;
 
 Table table_of(const Asset& asset, const Filter* filter = nullptr) {
-  Table words(sc_detect_table_words(&asset));
-  REQUIRE(sc_prepare_detect(&asset, SC_RADIUS_DETECT, filter, words.data(), words.size()) == SC_OK);
+  Table words(detect_table_words(&asset));
+  REQUIRE(prepare_detect(&asset, SC_RADIUS_DETECT, filter, words.data(), words.size()) == SC_OK);
   return words;
 }
 

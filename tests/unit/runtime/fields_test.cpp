@@ -165,14 +165,13 @@ TEST_CASE("a refit names what it cannot use") {
       {SC_ALIASED, SC_FIELD_SPHERES, [&](RefitJob& j) { j.pose.vertices = s.output<float>(39); }},
   };
   check_each(job, s.memory, asset_refusals<RefitJob>(s) + vertex_refusals<RefitJob>() + common + of_vertices);
-  CHECK(sc_refit(nullptr) == SC_NULL);
 }
 
 TEST_CASE("a detection names what it cannot use") {
   Scene s;
   OwnedFilter owned(*s.asset);
-  std::vector<std::uint64_t> table(sc_detect_table_words(s.asset));
-  REQUIRE(sc_prepare_detect(s.asset, SC_RADIUS_DETECT, nullptr, table.data(), table.size()) == SC_OK);
+  std::vector<std::uint64_t> table(detect_table_words(s.asset));
+  REQUIRE(prepare_detect(s.asset, SC_RADIUS_DETECT, nullptr, table.data(), table.size()) == SC_OK);
   DetectJob job;
   job.asset = s.asset;
   job.spheres = s.spheres.data();
@@ -212,10 +211,9 @@ TEST_CASE("a detection names what it cannot use") {
        }},
   };
   check_each(job, s.memory, asset_refusals<J>(s) + own);
-  CHECK(sc_detect(nullptr) == SC_NULL);
 
   const auto prepare = [&](const Asset* asset, Radius radius, const Filter* filter, std::uint64_t* words,
-                           std::size_t count) { return sc_prepare_detect(asset, radius, filter, words, count); };
+                           std::size_t count) { return prepare_detect(asset, radius, filter, words, count); };
   std::uint64_t* const words = table.data();
   const std::size_t count = table.size();
   const std::vector<std::uint64_t> before = table;
@@ -233,9 +231,9 @@ TEST_CASE("a detection names what it cannot use") {
 TEST_CASE("a search for skin contacts names what it cannot use") {
   Scene s;
   OwnedFilter owned(*s.asset);
-  std::vector<std::uint64_t> table(sc_skin_table_words(s.asset));
-  REQUIRE(sc_prepare_skin(s.asset, table.data(), table.size()) == SC_OK);
-  std::vector<std::uint64_t> scratch(sc_skin_scratch_words(s.asset));
+  std::vector<std::uint64_t> table(skin_table_words(s.asset));
+  REQUIRE(prepare_skin(s.asset, table.data(), table.size()) == SC_OK);
+  std::vector<std::uint64_t> scratch(skin_scratch_words(s.asset));
   std::vector<Pair> candidates{{0, 3}, {1, 4}, {1, 7}};
   SkinContactJob job;
   job.asset = s.asset;
@@ -306,7 +304,6 @@ TEST_CASE("a search for skin contacts names what it cannot use") {
        }},
   };
   check_each(job, s.memory, asset_refusals<J>(s) + bone_refusals<J>() + own);
-  CHECK(sc_find_skin_contacts(nullptr) == SC_NULL);
 
   job.pose = {};
   job.pose.vertices = s.tiny.rest.data();
@@ -314,7 +311,7 @@ TEST_CASE("a search for skin contacts names what it cannot use") {
   check_each(job, s.memory, asset_refusals<J>(s) + vertex_refusals<J>());
 
   const auto prepare = [&](const Asset* asset, std::uint64_t* words, std::size_t count) {
-    return sc_prepare_skin(asset, words, count);
+    return prepare_skin(asset, words, count);
   };
   const std::vector<std::uint64_t> before = table;
   CHECK(prepare(nullptr, table.data(), table.size()) == sc_status{SC_NULL, SC_FIELD_ASSET});
@@ -338,7 +335,7 @@ TEST_CASE("a step names what it cannot use") {
   job.a.body.pose = s.pose;
   job.a.body.skin_table = table.words.data();
   job.a.end = pose_of(end, s.weights);
-  std::vector<std::uint64_t> scratch(2 * sc_step_scratch_words(&job.a, &job.a) + 100000);
+  std::vector<std::uint64_t> scratch(2 * step_scratch_words(&job.a, &job.a) + 100000);
   job.scratch = scratch.data();
   job.scratch_words = scratch.size();
   job.contacts = s.output<StepContact>(0);
@@ -360,8 +357,8 @@ TEST_CASE("a step names what it cannot use") {
       {SC_BAD_VALUE, SC_FIELD_SKIN_TABLE, [&](J& j) { other(j).body.skin_table = s.memory.data(); }},
       {SC_NULL, SC_FIELD_SCRATCH, [](J& j) { j.scratch = nullptr; }},
       {SC_MISALIGNED, SC_FIELD_SCRATCH, [](J& j) { j.scratch = askew(j.scratch); }},
-      {SC_TOO_SMALL, SC_FIELD_SCRATCH, [](J& j) { j.scratch_words = sc_step_scratch_words(&j.a, nullptr) - 1; }},
-      {SC_TOO_SMALL, SC_FIELD_SCRATCH, [&](J& j) { j.scratch_words = sc_step_scratch_words(&j.a, &other(j)) - 1; }},
+      {SC_TOO_SMALL, SC_FIELD_SCRATCH, [](J& j) { j.scratch_words = step_scratch_words(&j.a, nullptr) - 1; }},
+      {SC_TOO_SMALL, SC_FIELD_SCRATCH, [&](J& j) { j.scratch_words = step_scratch_words(&j.a, &other(j)) - 1; }},
       {SC_NULL, SC_FIELD_CONTACTS, [](J& j) { j.contacts = nullptr; }},
       {SC_MISALIGNED, SC_FIELD_CONTACTS, [](J& j) { j.contacts = askew(j.contacts); }},
       {SC_MISALIGNED, SC_FIELD_IGNORED_PARTS, [&](J& j) { other(j).body.ignored_parts = askew(s.memory.data()); }},
@@ -410,7 +407,6 @@ TEST_CASE("a step names what it cannot use") {
       {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.contacts = as<StepContact>(end.data()); }},
   };
   check_each(job, s.memory, common + of_bones);
-  CHECK(sc_find_step_contacts(nullptr) == SC_NULL);
 
   job.a.body.pose = job.a.end = {};
   job.a.blend = SC_BLEND_SLERP;

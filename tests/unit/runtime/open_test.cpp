@@ -175,9 +175,9 @@ TEST_CASE("of an asset that is not open all is zero, and what it takes is nothin
   for (const Asset* asset : {&closed, static_cast<const Asset*>(nullptr)}) {
     CHECK(sc_asset_is_open(asset) == 0);
     CHECK(sc_pair_words(asset) == 0);
-    CHECK(sc_detect_table_words(asset) == 0);
-    CHECK(sc_skin_table_words(asset) == 0);
-    CHECK(sc_skin_scratch_words(asset) == 0);
+    CHECK(detect_table_words(asset) == 0);
+    CHECK(skin_table_words(asset) == 0);
+    CHECK(skin_scratch_words(asset) == 0);
     CHECK(sc_crowd_scratch_words(asset, 1) == 0);
   }
 }

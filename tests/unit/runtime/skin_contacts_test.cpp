@@ -322,7 +322,7 @@ TEST_CASE("a list that is too small gets its first entries, and the status names
   REQUIRE(all.spheres.size() > 4);
   REQUIRE(all.parts.size() > 4);
   const PreparedSkin table(opened.asset);
-  std::vector<std::uint64_t> scratch(sc_skin_scratch_words(&opened.asset));
+  std::vector<std::uint64_t> scratch(skin_scratch_words(&opened.asset));
   job.skin_table = table.words.data();
   job.scratch = scratch.data();
   job.scratch_words = scratch.size();

@@ -45,7 +45,7 @@ TEST_CASE("a skin without bones has clusters, and no terms or hulls; one without
   const OpenedAsset without(tiny.parts);
   REQUIRE_MESSAGE(without.status == SC_OK, without.message);
   CHECK(without.view().skin().sizes.clusters == 0);
-  CHECK(sc_skin_table_words(&without.asset) == 0);
+  CHECK(skin_table_words(&without.asset) == 0);
   add_skin(tiny, nullptr, 4);
   const OpenedAsset opened(tiny.parts);
   REQUIRE_MESSAGE(opened.status == SC_OK, opened.message);

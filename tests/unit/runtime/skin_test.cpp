@@ -148,10 +148,10 @@ TEST_CASE("the expanded hulls have their vertices' positions and weights") {
 TEST_CASE("the table fits its words at any alignment, and is none of another asset") {
   const SkinSource p(true, 3), q(false, 3);
   const OpenedAsset opened(p.tiny.parts), other(q.tiny.parts);
-  const std::size_t count = sc_skin_table_words(&opened.asset);
+  const std::size_t count = skin_table_words(&opened.asset);
   for (std::size_t offset = 0; offset < 9; ++offset) {
     std::vector<std::uint64_t> words(count + offset + 1, 7);
-    CHECK(sc_prepare_skin(&opened.asset, words.data() + offset, count) == SC_OK);
+    CHECK(prepare_skin(&opened.asset, words.data() + offset, count) == SC_OK);
     CHECK(words.back() == 7);
     Surface surface;
     CHECK(read_skin_table(opened.view(), words.data() + offset, surface) == SC_OK);
@@ -165,9 +165,9 @@ TEST_CASE("the table fits its words at any alignment, and is none of another ass
 TEST_CASE("a table that was copied to another place in its cache line is refused") {
   const SkinSource p(true, 3);
   const OpenedAsset opened(p.tiny.parts);
-  const std::size_t count = sc_skin_table_words(&opened.asset);
+  const std::size_t count = skin_table_words(&opened.asset);
   std::vector<std::uint64_t> words(count + 8);
-  REQUIRE(sc_prepare_skin(&opened.asset, words.data(), count) == SC_OK);
+  REQUIRE(prepare_skin(&opened.asset, words.data(), count) == SC_OK);
   std::copy_backward(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(count), words.end() - 7);
   Surface surface;
   CHECK(read_skin_table(opened.view(), words.data() + 1, surface) == sc_status{SC_BAD_VALUE, SC_FIELD_SKIN_TABLE});

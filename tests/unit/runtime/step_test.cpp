@@ -251,7 +251,7 @@ TEST_CASE("a list of step contacts that is too small gets its first entries") {
   job.a.end = pose_of(end);
   const StepContacts all = find_contacts(job);
   REQUIRE(all.contacts.size() > 3);
-  std::vector<std::uint64_t> scratch(sc_step_scratch_words(&job.a, nullptr));
+  std::vector<std::uint64_t> scratch(step_scratch_words(&job.a, nullptr));
   std::vector<StepContact> first(all.contacts.size() - 2);
   job.scratch = scratch.data();
   job.scratch_words = scratch.size();

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 # cmake -D ROOT=<repository> -P surface_rules.cmake: fails where the public surface is larger than these limits, which only
 # fall. Types are structs and enums; functions are those of the C interface.
-set(most_headers 17)
-set(most_types 57)
-set(most_functions 66)
+set(most_headers 10)
+set(most_types 46)
+set(most_functions 46)
 
 file(GLOB headers ${ROOT}/runtime/include/spherechain/*.h)
 set(types 0)

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// Where does a skin intersect itself, or another skin? The answers are exact: all triangles that intersect, and no
+// other.
+//
+// A job allocates nothing and takes no lock. Jobs on other outputs and scratch memory may run at the same time. Scratch
+// memory keeps nothing between runs. Lists are sorted and have each entry once; a null list is counted only. Counts say
+// how many there are, also where a list is too small.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "spherechain/contacts.h"
+#include "spherechain/filter.h"
+#include "spherechain/pose.h"
+
+namespace spherechain {
+
+// The skin is where the vertices put it; without vertices the job skins what it needs from the bones. With both, the
+// bones bound the search, and each vertex must be where its bone weights put it, up to rounding; else give vertices
+// alone (docs/arithmetic.md). A position that is not finite intersects nothing; matrices that are not finite may lose
+// contacts.
+//
+// Left out are triangles that share a position at rest (neighbours), triangles that intersect in the rest pose, and
+// ignored pairs.
+struct SkinContactJob {
+  const Asset* asset = nullptr;  // open, with triangles
+  Pose pose;
+  Scope scope{};
+  Target target{};
+  std::int32_t spheres_only = 0;              // 1: finds pairs of spheres alone, each until its first contact
+  const std::uint64_t* skin_table = nullptr;  // from prepare_skin(), of this asset
+  const Filter* filter = nullptr;             // null: the asset's ignored pairs
+  // Null, or: only these pairs of spheres, ignored or not, a <= b; a = b: within one sphere's triangles. Sorted, each
+  // once. Then scope and filter must be zero.
+  const Pair* candidates = nullptr;
+  std::size_t candidate_count = 0;
+  std::uint64_t* scratch = nullptr;  // skin_scratch_words() words
+  std::size_t scratch_words = 0;
+  // Out. With spheres_only there are no parts and no triangles. Triangles that are not listed cost less.
+  PartContact* parts = nullptr;
+  std::size_t part_capacity = 0;
+  Pair* spheres = nullptr;  // a = b: within one sphere's triangles
+  std::size_t sphere_capacity = 0;
+  TriangleContact* triangles = nullptr;
+  std::size_t triangle_capacity = 0;
+  // A bit for each two parts that are asked about; null: all are. Of one body with n parts it is bit
+  // a n + b - a (a + 1) / 2, a <= b; of two, bit a n + b, where b has n parts.
+  const std::uint64_t* part_pairs = nullptr;
+  std::size_t part_count = 0, sphere_count = 0, triangle_count = 0;
+
+  // SC_OK; SC_OVERFLOW: the first entries of the sorted lists are written; after another error nothing is.
+  Status run() noexcept;
+};
+
+// One of two bodies. Both stand in one space; two bodies may be of one asset.
+struct JobBody {
+  const Asset* asset = nullptr;  // open, with triangles; a character, or what `bake --prop` wrote
+  Pose pose;                     // as of a SkinContactJob; a prop has one bone
+  const std::uint64_t* skin_table = nullptr;
+  const std::uint64_t* ignored_parts = nullptr;  // bit p: body part p meets nothing; null: all parts meet
+};
+
+// In what it lists, `_a` and the first index are of body a, `_b` and the second of body b: nothing is swapped. Nothing
+// is left out but the parts that the bodies ignore. Fields, lists and errors are those of a SkinContactJob.
+struct BodyContactJob {
+  JobBody a, b;
+  Target target{};
+  std::int32_t spheres_only = 0;
+  std::uint64_t* scratch = nullptr;  // body_scratch_words() words
+  std::size_t scratch_words = 0;
+  PartContact* parts = nullptr;
+  std::size_t part_capacity = 0;
+  Pair* spheres = nullptr;
+  std::size_t sphere_capacity = 0;
+  TriangleContact* triangles = nullptr;
+  std::size_t triangle_capacity = 0;
+  const std::uint64_t* part_pairs = nullptr;
+  std::size_t part_count = 0, sphere_count = 0, triangle_count = 0;
+
+  Status run() noexcept;
+};
+
+// Expands the asset's packed skin into `words`, skin_table_words() of them, once. Any number of jobs may share the
+// table; it must not change. 64-byte alignment is fastest.
+std::size_t skin_table_words(const Asset* asset) noexcept;
+Status prepare_skin(const Asset* asset, std::uint64_t* words, std::size_t word_count) noexcept;
+
+// Words of scratch memory; 0 where an asset is not open or has no triangles.
+std::size_t skin_scratch_words(const Asset* asset) noexcept;
+std::size_t body_scratch_words(const Asset* a, const Asset* b) noexcept;
+
+// A box that holds all of the body's skin for certain: from bones somewhat too large, without reading a vertex; from
+// vertices alone exact. Reads asset, pose and skin_table.
+Status bound_body(const JobBody& body, Vec3& low, Vec3& high) noexcept;
+
+}  // namespace spherechain

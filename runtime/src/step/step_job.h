@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// What touches on the way from one pose to the next, and when?
+#pragma once
+
+#include "skin/contact_jobs.h"
+
+namespace spherechain {
+
+// How a body goes from one pose to the next.
+enum Blend : std::int32_t {
+  SC_BLEND_LINEAR = 0,  // matrices, vertices and morph weights: each number on its own
+  SC_BLEND_SLERP = 1,   // joints: rotations at constant speed; translations, scales and morph weights linearly
+  SC_BLEND_NLERP = 2,   // joints: rotations as quaternions, linearly, brought back to unit length
+};
+
+// A body, and where it stands a step later. Of one body alone ignored_parts is not read.
+//
+// SC_BLEND_LINEAR: from body.pose to `end`, both with bones, or both with vertices.
+// SC_BLEND_SLERP, SC_BLEND_NLERP: from start_joints to end_joints, each in its parent's space, composed down the
+// skeleton as engines do; poses have morph weights at most, no bones and no vertices. The bone b of the asset gets the
+// world matrix of its joint times the asset's inverse bind matrix (sc_asset_bone()); joints may be there that move no
+// bone; a bone without a joint stays at rest. A rotation goes the shorter way round: of one that turns a joint by half
+// a turn or more in one step, that way is assumed; of exactly half a turn, the sign that the quaternions have.
+struct Motion {
+  JobBody body;
+  Pose end;
+  Blend blend{};
+  const Transform* start_joints = nullptr;
+  const Transform* end_joints = nullptr;
+  std::size_t joint_count = 0;             // at most 65536
+  const std::uint32_t* parents = nullptr;  // of a joint an earlier one, or SC_NO_JOINT; null: of all SC_NO_JOINT
+  const std::uint32_t* joint_of_bone =
+      nullptr;  // of each bone of the asset: sc_bind_joints(); null: joint b moves bone b
+};
+
+// All pairs of body parts that touch on the way from one pose to the next: of body a with itself, where b.body.asset is
+// null, else of a and b. Nothing is missing and nothing made up, but for the tolerance: what comes no further into
+// contact than that, measured as the change of the distance of two corners of the skin, may be found or not; and times
+// are as exact. Of corners that move against each other by more than 32768 tolerances in the step, about three heights,
+// it is larger. Left out is what a SkinContactJob, or a BodyContactJob, leaves out. Matrices and vertices that are not
+// finite touch nothing.
+struct StepJob {
+  Motion a, b;
+  Target target{};
+  const Filter* filter = nullptr;    // of one body; null: the asset's ignored pairs
+  float tolerance = 0;               // a share of the height of a's asset; 0: 0.0001
+  std::uint64_t* scratch = nullptr;  // step_scratch_words() words
+  std::size_t scratch_words = 0;
+  // Out: sorted by (part_a, part_b), each once; null: count only. Of n parts at most n (n + 1) / 2; of two bodies n m.
+  StepContact* contacts = nullptr;
+  std::size_t contact_capacity = 0;
+  std::size_t contact_count = 0;
+
+  // As a BodyContactJob; and SC_BAD_VALUE: SC_FIELD_END (vertices at one end alone), SC_FIELD_BLEND, SC_FIELD_JOINTS
+  // (not finite, a quaternion of length zero, a pose with bones or vertices beside them; or a step so wild that the
+  // skin may be 256 heights off straight lines), SC_FIELD_MORPH_WEIGHTS (as wild, or not finite), SC_FIELD_PARENTS,
+  // SC_FIELD_TOLERANCE (not finite, negative, above 1).
+  Status run() noexcept;
+};
+
+// Words of scratch memory for those assets and numbers of joints; b null: one body. Of two bodies those that have
+// vertices need more. 0 where an asset is not open or has no triangles, or there are too many joints.
+std::size_t step_scratch_words(const Motion* a, const Motion* b) noexcept;
+
+}  // namespace spherechain
