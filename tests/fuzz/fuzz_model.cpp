@@ -76,6 +76,10 @@ class Asking {
     auto* const ignored = c.arena.add<std::uint64_t>(words);
     for (std::size_t i = 0; i < words; ++i) ignored[i] = c.random.bits() & c.random.bits();
     ignored_parts_ = ignored;
+    const std::size_t parts = c.view().part_count();
+    auto* const pairs = c.arena.add<std::uint64_t>(parts * parts / 64 + 1);
+    for (std::size_t i = 0; i <= parts * parts / 64; ++i) pairs[i] = c.random.bits();
+    part_pairs_ = pairs;
     auto* const previous = c.arena.add<Penetration>(kPrevious);
     for (std::size_t i = 0; i < kPrevious; ++i) {
       previous[i] = {};
@@ -99,8 +103,8 @@ class Asking {
     (status == SC_OK ? c_.tally.ran : c_.tally.refused) += 1;
     if (!is_posed) {
       c_.expect(status == SC_NOT_OPEN, "an answer of a body without a pose");
-    } else if (question == Question::kSpheres && status == SC_NOT_IN_ASSET) {
-      return;  // the pose has what the spheres of this asset do not follow
+    } else if (status == SC_NOT_IN_ASSET && (question == Question::kSpheres || skin_table_words(&c_.asset) == 0)) {
+      return;  // the asset has no skin, or the pose has what its spheres do not follow
     } else if (drawn.wanted != SC_OK) {
       c_.expect(status == drawn.wanted, "a question with a wrong argument");
     } else if (question == Question::kSteps) {
@@ -125,6 +129,8 @@ class Asking {
     if (!of_two && random.one_in(3)) query.filter = &filter_;
     if (of_two && random.one_in(3)) query.ignored_parts = ignored_parts_;
     if (of_two && random.one_in(3)) query.ignored_parts_of_other = ignored_parts_;
+    const bool is_of_parts = question == Question::kPenetrations || question == Question::kContacts;
+    if (is_of_parts && random.one_in(3)) query.part_pairs = part_pairs_;
     if (random.one_in(3)) {
       query.previous = previous_;
       query.previous_count = kPrevious;
@@ -221,7 +227,7 @@ class Asking {
   Case& c_;
   const Model& model_;
   Filter filter_, filter_of_less_;
-  const std::uint64_t* ignored_parts_ = nullptr;
+  const std::uint64_t *ignored_parts_ = nullptr, *part_pairs_ = nullptr;
   const Penetration* previous_ = nullptr;
 };
 
