@@ -47,14 +47,14 @@ def rotation(vector):
     return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
-def push_out(asset, character, local, nodes, inverse_binds, most_steps=60):
+def push_out(model, character, local, nodes, inverse_binds, most_steps=60):
     """Turns joints until no fault is left. Returns the pose, and the depth in mm after each step."""
     local, depths = local.copy(), []
     for _ in range(most_steps):
         world = character.world(local)
         bones = skinning_matrices(world, nodes, inverse_binds)
-        depths.append(asset.contacts(bones).depth_mm)
-        energy, gradient = asset.skin_energy(bones)
+        depths.append(model.penetrations(bones).depth_mm)
+        energy, gradient = model.skin_energy(bones)
         if energy == 0:
             break
         slopes = turns(character, world, nodes, inverse_binds, gradient)
@@ -73,23 +73,23 @@ def main():
     parser.add_argument("clip", help="rigged .glb with a clip")
     parser.add_argument("-o", "--output", type=Path, default=Path("."), help="folder for the pictures")
     arguments = parser.parse_args()
-    asset, character = spherechain.Asset(arguments.asset), Character(arguments.clip)
-    nodes = [character.names.index(bone.name) for bone in asset.bones]
-    inverse_binds = np.stack([np.vstack([bone.inverse_bind, [0, 0, 0, 1]]) for bone in asset.bones])
+    model, character = spherechain.Model(arguments.asset), Character(arguments.clip)
+    nodes = [character.names.index(bone.name) for bone in model.bones]
+    inverse_binds = np.stack([np.vstack([bone.inverse_bind, [0, 0, 0, 1]]) for bone in model.bones])
 
     # The whole clip at once, by all cores.
     clip = character.clip(FPS)
     world = character.world(clip)
-    contacts = asset.contacts(skinning_matrices(world, nodes, inverse_binds), threads=0)
-    depths = [frame.depth_mm for frame in contacts]
+    faults = model.penetrations(skinning_matrices(world, nodes, inverse_binds), threads=0)
+    depths = [frame.depth_mm for frame in faults]
     worst = int(np.argmax(depths))
     if depths[worst] == 0:
         raise SystemExit(f"{len(clip)} frames, no fault")
-    deepest = max((c for c in contacts[worst] if c.is_fault), key=lambda c: c.depth)
+    deepest = max(faults[worst], key=lambda fault: fault.depth)
     print(f"{len(clip)} frames, faults in {np.count_nonzero(depths)}")
     print(f"worst: frame {worst}, {deepest.part} in {deepest.other}, {deepest.depth_mm:.0f} mm deep")
 
-    after, path = push_out(asset, character, clip[worst], nodes, inverse_binds)
+    after, path = push_out(model, character, clip[worst], nodes, inverse_binds)
     print(f"pushed out in {len(path) - 1} steps: {' '.join(f'{depth:.0f}' for depth in path)} mm")
     linear = after[:, :3, :3] @ np.linalg.inv(clip[worst, :, :3, :3])
     angles = np.degrees(np.arccos(np.clip((np.trace(linear, axis1=1, axis2=2) - 1) / 2, -1, 1)))
@@ -97,21 +97,21 @@ def main():
 
     arguments.output.mkdir(parents=True, exist_ok=True)
     write_curves(arguments.output / "depth.svg", {"deepest fault, mm": ("#c33", depths)}, FPS, worst)
-    draw_both(arguments.output / "worst.png", asset, character, deepest, world[worst], character.world(after))
+    draw_both(arguments.output / "worst.png", model, character, deepest, world[worst], character.world(after))
 
 
-def draw_both(path, asset, character, contact, before, after):
+def draw_both(path, model, character, contact, before, after):
     """Side by side, from the front and a little from the side; the two body parts in red and blue."""
-    names = [asset.parts[i].name for i in range(len(asset.parts))]
-    part_of_bone = {asset.bones[part.bone].name: name for part, name in zip(asset.parts, names) if part.bone is not None}
+    names = [model.parts[i].name for i in range(len(model.parts))]
+    part_of_bone = {model.bones[part.bone].name: name for part, name in zip(model.parts, names) if part.bone is not None}
     most = character.joints[np.arange(len(character.joints)), character.weights.argmax(1)]
     part_of_joint = [part_of_bone.get(character.names[node], "") for node in character.skin_nodes]
     palette = {contact.part: (0.9, 0.3, 0.25), contact.other: (0.25, 0.45, 0.9)}
     colors = np.array([palette.get(name, (0.8, 0.78, 0.75)) for name in part_of_joint])[most[character.triangles[:, 0]]]
-    left, up, forward = map(np.array, (asset.left, asset.up, asset.forward))
+    left, up, forward = map(np.array, (model.left, model.up, model.forward))
     eye = 0.87 * forward + 0.5 * left
     axes = [np.cross(up, eye), up, eye]
-    images = [render(character.skinned(pose), character.triangles, colors, contact.point, axes, 0.55 * asset.height, 480)
+    images = [render(character.skinned(pose), character.triangles, colors, contact.point, axes, 0.55 * model.height, 480)
               for pose in (before, after)]
     write_png(path, np.concatenate(images, 1))
 

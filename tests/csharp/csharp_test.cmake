@@ -92,7 +92,7 @@ elseif(CASE STREQUAL drift)
   change(types.h "float x, y, z, radius" "float radius, x, y, z" "C:  field Sphere.Radius at 0, 4 bytes, float")
   change(types.h "  SC_OVERFLOW = 1, " "  SC_OVERFLOW = 91, " "C:  enum Code.Overflow 91")
   change(pose.h "size_t bone_stride" "uint32_t bone_stride" "C:  field Pose.BoneStride at 20, 4 bytes, unsigned")
-  change(abi.h "SC_ABI_VERSION " "SC_ABI_VERSION 1" "C:  constant AbiVersion 1")
+  change(types.h "SC_ABI_VERSION " "SC_ABI_VERSION 1" "C:  constant AbiVersion 1")
   change(asset.h "SPHERECHAIN_API uint32_t sc_abi_version(void)"
     "SPHERECHAIN_API void sc_new(size_t n) SC_NOEXCEPT;\nSPHERECHAIN_API uint32_t sc_abi_version(float x)"
     "C:  function void sc_new(UIntPtr)")

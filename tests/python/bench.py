@@ -33,15 +33,15 @@ except ImportError:
 class Proxy:
     """What the loss is made of, for all who compute it."""
 
-    def __init__(self, asset):
-        count, bones = asset.sphere_count, len(asset.bones)
+    def __init__(self, model):
+        count, bones = model.sphere_count, len(model.bones)
         # Centres are linear in the matrices. Their coefficients are the slopes of each sphere's x by the first rows.
         one = np.zeros((count, count, 4))
         one[range(count), range(count), 0] = 1
         pose = np.tile(np.eye(3, 4), (count, bones, 1, 1))
-        self.terms = asset.spheres_vjp(pose, one)[:, :, 0].reshape(count, bones * 4).T.astype(np.float32).copy()
-        self.radii = asset.rest_spheres[:, 3].copy()
-        self.reach = asset.pair_scales() * (self.radii[:, None] + self.radii)
+        self.terms = model.spheres_vjp(pose, one)[:, :, 0].reshape(count, bones * 4).T.astype(np.float32).copy()
+        self.radii = model.rest_spheres[:, 3].copy()
+        self.reach = model.pair_scales() * (self.radii[:, None] + self.radii)
 
 
 def by_numpy(proxy, bones):
@@ -68,25 +68,25 @@ def by_torch(proxy, bones):
     return energy.detach().numpy(), bones.grad.numpy()
 
 
-def by_spherechain(asset, proxy, threads):
+def by_spherechain(model, proxy, threads):
     def run(bones):
-        spheres = asset.spheres(bones, threads=threads)
+        spheres = model.spheres(bones, threads=threads)
         spheres[..., 3] = proxy.radii
-        energy, slopes = asset.pair_energy(spheres, threads=threads)
+        energy, slopes = model.pair_energy(spheres, threads=threads)
         slopes[..., 3] = 0
-        return energy, asset.spheres_vjp(bones, slopes, threads=threads)
+        return energy, model.spheres_vjp(bones, slopes, threads=threads)
     return run
 
 
-def contestants(asset):
-    proxy = Proxy(asset)
+def contestants(model):
+    proxy = Proxy(model)
     out = {"numpy": lambda bones: by_numpy(proxy, bones)}
     if torch is not None:
         out["torch"] = lambda bones: by_torch(proxy, bones)
-    out["spherechain, 1 thread"] = by_spherechain(asset, proxy, 1)
-    out["spherechain, all cores"] = by_spherechain(asset, proxy, 0)
-    out["radii follow the bones, 1 thread"] = lambda bones: asset.sphere_energy(bones)
-    out["radii follow the bones, all cores"] = lambda bones: asset.sphere_energy(bones, threads=0)
+    out["spherechain, 1 thread"] = by_spherechain(model, proxy, 1)
+    out["spherechain, all cores"] = by_spherechain(model, proxy, 0)
+    out["radii follow the bones, 1 thread"] = lambda bones: model.sphere_energy(bones)
+    out["radii follow the bones, all cores"] = lambda bones: model.sphere_energy(bones, threads=0)
     return out
 
 
@@ -119,9 +119,9 @@ def main():
     parser.add_argument("--rounds", type=int, default=15)
     parser.add_argument("--memory", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
-    asset = spherechain.Asset(arguments.asset)
-    bones = random_poses(asset, arguments.batch)
-    runs = contestants(asset)
+    model = spherechain.Model(arguments.asset)
+    bones = random_poses(model, arguments.batch)
+    runs = contestants(model)
     if arguments.memory:
         runs[arguments.memory](bones[:1])
         before = memory_mb("VmRSS")
@@ -137,7 +137,7 @@ def main():
             run(bones)
             if turn > 0:
                 times[name].append(time.perf_counter() - start)
-    print(f"{asset.sphere_count} spheres on {len(asset.bones)} bones, batch {arguments.batch}, loss and gradient")
+    print(f"{model.sphere_count} spheres on {len(model.bones)} bones, batch {arguments.batch}, loss and gradient")
     print(f"{'':36}{'ms':>8}{'poses/s':>10}{'numpy = 1':>11}{'MB':>7}")
     base = statistics.median(times["numpy"])
     for name, own in times.items():

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* reference ASSET BONES: what the C interface answers, for a comparison bit by bit. BONES holds matrices of 3 by 4 floats,
- * pose after pose. Of each pose it writes to standard output the spheres, then, each after their number as 8 bytes, the
- * pairs of spheres, the pairs of triangles and the penetrations. */
+/* reference ASSET BONES: what the C interface answers, for a comparison bit by bit. BONES holds matrices of 3 by 4
+ * floats, pose after pose. For each pose it writes to standard output the spheres; each after their number as 8 bytes,
+ * the pairs of spheres, contacts of parts, spheres and triangles, all penetrations, the faults, what is below y = 0,
+ * what is in the first pose, the touches on the way from there; and the bounds. */
 #include <spherechain/spherechain.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { kMaxPairs = 4096, kMaxTriangles = 65536, kMaxPenetrations = 512 };
+enum { kMaxTriangles = 65536, kMaxPenetrations = 512 };
 
 static void* read_file(const char* path, size_t* size) {
   FILE* file = fopen(path, "rb");
@@ -43,65 +44,64 @@ int main(int argc, char** argv) {
   size_t size, bones_size;
   void* data = read_file(argv[1], &size);
   float* bones = read_file(argv[2], &bones_size);
-  sc_asset asset = {{0}};
-  require(sc_asset_open(&asset, SC_ABI_VERSION, data, size, NULL, 0));
-  const sc_asset_info info = sc_asset_get_info(&asset);
+  sc_model_def def = {0};
+  def.data = data;
+  def.size = size;
+  sc_model* model;
+  require(sc_create_model(SC_ABI_VERSION, &def, &model, NULL, 0));
+  const sc_asset_info info = sc_asset_get_info(sc_get_asset(model));
+  sc_body_def body_def = {0};
+  body_def.max_triangles = kMaxTriangles;
+  body_def.max_penetrations = kMaxPenetrations;
+  body_def.finds_steps = 1;
+  sc_body *body, *other;
+  require(sc_create_body(model, &body_def, &body));
+  require(sc_create_body(model, &body_def, &other));
   const size_t floats = 12 * info.bone_count, poses = bones_size / (floats * sizeof(float));
-  sc_sphere* spheres = calloc(info.sphere_count, sizeof *spheres);
-  sc_pair* pairs = calloc(kMaxPairs, sizeof *pairs);
-  sc_triangle_contact* triangles = calloc(kMaxTriangles, sizeof *triangles);
-  sc_penetration* penetrations = calloc(kMaxPenetrations, sizeof *penetrations);
-  const size_t words = sc_skin_scratch_words(&asset), depth_words = sc_penetration_scratch_words(&asset, kMaxTriangles);
-  const size_t table_words = sc_skin_table_words(&asset);
-  uint64_t* scratch = calloc(words + depth_words + table_words, sizeof *scratch);
-  uint64_t* table = scratch + words + depth_words;
-  require(sc_prepare_skin(&asset, table, table_words));
+  sc_query query = {0};
+  query.detail = SC_DETAIL_FULL;
+  query.classes = ~0U;
   for (size_t i = 0; i < poses; ++i) {
     sc_pose pose = {0};
     pose.bones = bones + i * floats;
     pose.bone_count = info.bone_count;
     pose.bone_layout = SC_ROWS_3X4;
+    require(sc_set_pose(body, &pose, NULL));
 
-    sc_refit_job refit = {0};
-    refit.asset = &asset;
-    refit.pose = pose;
-    refit.spheres = spheres;
-    refit.sphere_capacity = info.sphere_count;
-    require(sc_refit(&refit));
-    fwrite(spheres, sizeof *spheres, info.sphere_count, stdout);
+    sc_sphere_pairs spheres;
+    require(sc_find_sphere_pairs(body, NULL, &spheres));
+    fwrite(spheres.spheres, sizeof *spheres.spheres, spheres.sphere_count, stdout);
+    put(spheres.pairs, sizeof *spheres.pairs, spheres.count);
 
-    sc_detect_job detect = {0};
-    detect.asset = &asset;
-    detect.spheres = spheres;
-    detect.sphere_count = info.sphere_count;
-    detect.pairs = pairs;
-    detect.pair_capacity = kMaxPairs;
-    require(sc_detect(&detect));
-    put(pairs, sizeof *pairs, detect.pair_count);
+    sc_contacts contacts;
+    require(sc_find_contacts(body, NULL, &query, &contacts));
+    put(contacts.parts, sizeof *contacts.parts, contacts.part_count);
+    put(contacts.spheres, sizeof *contacts.spheres, contacts.sphere_count);
+    put(contacts.triangles, sizeof *contacts.triangles, contacts.triangle_count);
 
-    sc_skin_contact_job skin = {0};
-    skin.asset = &asset;
-    skin.pose = pose;
-    skin.skin_table = table;
-    skin.scratch = scratch;
-    skin.scratch_words = words;
-    skin.triangles = triangles;
-    skin.triangle_capacity = kMaxTriangles;
-    require(sc_find_skin_contacts(&skin));
-    put(triangles, sizeof *triangles, skin.triangle_count);
+    sc_penetrations found;
+    require(sc_find_penetrations(body, NULL, &query, &found));
+    put(found.items, sizeof *found.items, found.count);
+    require(sc_find_penetrations(body, NULL, NULL, &found));
+    put(found.items, sizeof *found.items, found.count);
 
-    sc_penetration_job depth = {0};
-    depth.asset = &asset;
-    depth.pose = pose;
-    depth.skin_table = table;
-    depth.contacts = triangles;
-    depth.contact_count = skin.triangle_count;
-    depth.scratch = scratch + words;
-    depth.scratch_words = depth_words;
-    depth.penetrations = penetrations;
-    depth.penetration_capacity = kMaxPenetrations;
-    require(sc_measure_penetrations(&depth));
-    put(penetrations, sizeof *penetrations, depth.penetration_count);
+    sc_ground ground = {{0, 1, 0}, 0, NULL, NULL};
+    require(sc_find_in_ground(body, &ground, &query, &found));
+    put(found.items, sizeof *found.items, found.count);
+
+    /* Another body in the first pose, and the way from there to this pose. */
+    pose.bones = bones;
+    require(sc_set_pose(other, &pose, NULL));
+    require(sc_find_penetrations(body, other, &query, &found));
+    put(found.items, sizeof *found.items, found.count);
+    pose.bones = bones + i * floats;
+    require(sc_set_pose(other, &pose, NULL));
+    sc_steps steps;
+    require(sc_find_steps(other, NULL, NULL, &steps));
+    put(steps.items, sizeof *steps.items, steps.count);
+    sc_vec3 box[2];
+    require(sc_get_bounds(body, &box[0], &box[1]));
+    fwrite(box, sizeof box, 1, stdout);
   }
   return 0;
 }

@@ -31,63 +31,96 @@ class Reader:
 class Answers(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.asset = spherechain.Asset(DOLL)
-        cls.bones = random_poses(cls.asset, 24, 80)
-        cls.bones[20] = heap(cls.asset)
-        cls.contacts = cls.asset.contacts(cls.bones, triangles=True)
+        cls.model = spherechain.Model(DOLL)
+        cls.bones = random_poses(cls.model, 24, 80)
+        cls.bones[20] = heap(cls.model)
+        cls.all = {"detail": "full", "classes": spherechain.CLASSES}
+        cls.found = cls.model.penetrations(cls.bones, **cls.all)
 
     def test_are_those_of_the_c_interface_bit_by_bit(self):
         with tempfile.TemporaryDirectory() as folder:
             poses = Path(folder, "bones")
             poses.write_bytes(self.bones.tobytes())
             reader = Reader(subprocess.run([REFERENCE, DOLL, poses], capture_output=True, check=True).stdout)
-        spheres, pairs = self.asset.spheres(self.bones), self.asset.pairs(self.bones)
-        found = 0
-        for i, contacts in enumerate(self.contacts):
-            self.assertEqual(spheres[i].tobytes(), reader.take(np.float32, 4 * self.asset.sphere_count).tobytes())
+        spheres, pairs = self.model.spheres(self.bones), self.model.sphere_pairs(self.bones)
+        contacts = self.model.contacts(self.bones, detail="full", threads=2)
+        faults, floor = self.model.penetrations(self.bones), self.model.below((0, 1, 0), 0, self.bones, **self.all)
+        firsts = np.broadcast_to(self.bones[0], self.bones.shape)
+        with_first = self.model.penetrations(self.bones, other=spherechain.Posed(self.model, firsts), **self.all)
+        steps, bounds = self.model.steps(firsts, self.bones), self.model.bounds(self.bones)
+        counts = np.zeros(6, int)
+        for i, found in enumerate(self.found):
+            self.assertEqual(spheres[i].tobytes(), reader.take(np.float32, 4 * self.model.sphere_count).tobytes())
             self.assertEqual(pairs[i].tobytes(), reader.take(np.dtype("u4,u4")).tobytes())
-            self.assertEqual(contacts.triangles.tobytes(), reader.take(spherechain.TRIANGLE_PAIR).tobytes())
-            self.assertEqual(contacts.array.tobytes(), reader.take(spherechain.PENETRATION).tobytes())
-            found += len(contacts)
+            self.assertEqual(contacts[i].array.tobytes(), reader.take(spherechain.PART_CONTACT).tobytes())
+            self.assertEqual(contacts[i].spheres.tobytes(), reader.take(spherechain.SPHERE_PAIR).tobytes())
+            self.assertEqual(contacts[i].triangles.tobytes(), reader.take(spherechain.TRIANGLE_PAIR).tobytes())
+            lists = (found, faults[i], floor[i], with_first[i])
+            for own in lists:
+                self.assertEqual(own.array.tobytes(), reader.take(spherechain.PENETRATION).tobytes())
+                self.assertEqual(own.total, len(own))
+            self.assertEqual(steps[i].array.tobytes(), reader.take(spherechain.STEP).tobytes())
+            self.assertEqual(bounds[i].tobytes(), reader.take(np.float32, 6).tobytes())
+            counts += [*map(len, lists), len(steps[i]), len(contacts[i])]
         self.assertEqual(reader.at, len(reader.data))
-        self.assertGreater(found, 24)
+        self.assertTrue((counts > 10).all(), counts)
         self.assertGreater(len(pairs[20]), 256)
-        self.assertGreater(len(self.contacts[20].triangles), 1024)
-        self.assertGreater(len(self.contacts[20]), 32)
+        self.assertGreater(len(contacts[20].triangles), 1024)
+        self.assertGreater(len(self.found[20]), 32)
+
+    def test_options_choose_among_all_answers(self):
+        pose = self.bones[20]
+        everything = self.found[20]
+        worst = self.model.penetrations(pose, limit=2, **self.all)
+        self.assertEqual(worst.array.tobytes(), everything.array[:2].tobytes())
+        self.assertEqual(worst.total, len(everything))
+        folds = self.model.penetrations(pose, detail="full", classes=["fold"])
+        self.assertEqual({entry.kind for entry in folds}, {"fold"})
+        pairs = [(int(row["part"]), int(row["other"])) for row in everything.array[:2]]
+        self.assertEqual(self.model.penetrations(pose, part_pairs=pairs, **self.all).array.tobytes(), worst.array.tobytes())
+        strict = self.model.penetrations(pose, rule=spherechain.Rule(touch_depth=1e-9))
+        self.assertGreater(len(strict), len(self.model.penetrations(pose)))
+        spheres = self.model.contacts(pose, detail="full").spheres
+        apart = self.model.contacts(pose, ignored_spheres=[(int(a), int(b)) for a, b in spheres if a != b])
+        self.assertLess(len(apart), len(everything))
+        nothing = self.model.contacts(pose, other=spherechain.Posed(self.model, pose), ignored_parts=range(len(self.model.parts)))
+        self.assertEqual(len(nothing), 0)
+        part, _, sphere = self.model.triangle(0)
+        self.assertTrue(part < len(self.model.parts) and sphere < self.model.sphere_count)
 
     def test_do_not_depend_on_threads_shape_or_strides(self):
-        wide = np.zeros((4, 6, len(self.asset.bones), 4, 4), np.float32)
+        wide = np.zeros((4, 6, len(self.model.bones), 4, 4), np.float32)
         wide[..., :3, :] = self.bones.reshape(4, 6, -1, 3, 4)
         backwards = np.flip(np.flip(self.bones, 0).copy(), 0)
         for bones, threads in ((self.bones, 2), (wide, 0), (backwards, 1), (np.asfortranarray(self.bones), 3)):
-            np.testing.assert_array_equal(self.asset.spheres(bones, threads=threads).reshape(24, -1, 4),
-                                          self.asset.spheres(self.bones))
-            contacts = self.asset.contacts(bones, threads=threads)
+            np.testing.assert_array_equal(self.model.spheres(bones, threads=threads).reshape(24, -1, 4),
+                                          self.model.spheres(self.bones))
+            found = self.model.penetrations(bones, threads=threads, **self.all)
             if bones is wide:
-                contacts = [entry for row in contacts for entry in row]
-            self.assertEqual([c.array.tobytes() for c in contacts], [c.array.tobytes() for c in self.contacts])
-        one = self.asset.contacts(self.bones[3])
-        self.assertEqual(one.array.tobytes(), self.contacts[3].array.tobytes())
-        self.assertEqual(self.asset.contacts(self.bones[:0]), [])
-        self.assertEqual(self.asset.spheres(wide[:0]).shape, (0, 6, self.asset.sphere_count, 4))
+                found = [entry for row in found for entry in row]
+            self.assertEqual([c.array.tobytes() for c in found], [c.array.tobytes() for c in self.found])
+        one = self.model.penetrations(self.bones[3], **self.all)
+        self.assertEqual(one.array.tobytes(), self.found[3].array.tobytes())
+        self.assertEqual(self.model.penetrations(self.bones[:0]), [])
+        self.assertEqual(self.model.spheres(wide[:0]).shape, (0, 6, self.model.sphere_count, 4))
 
     def test_are_the_same_in_threads_of_python_at_once(self):
         results = [None] * 4
 
         def run(k):
-            results[k] = [c.array.tobytes() for c in spherechain_asset.contacts(self.bones, threads=2)]
+            results[k] = [c.array.tobytes() for c in fresh.penetrations(self.bones, threads=2, **self.all)]
 
-        spherechain_asset = pickle.loads(pickle.dumps(self.asset))  # its tables are made in these threads
+        fresh = pickle.loads(pickle.dumps(self.model))  # its bodies are made in these threads
         threads = [threading.Thread(target=run, args=(k,)) for k in range(4)]
         for thread in threads:
             thread.start()
         for thread in threads:
             thread.join()
-        self.assertEqual(results, [[c.array.tobytes() for c in self.contacts]] * 4)
+        self.assertEqual(results, [[c.array.tobytes() for c in self.found]] * 4)
 
     def test_leave_python_free_in_the_meantime(self):
         bones = np.tile(self.bones, (8, 1, 1, 1))
-        worker = threading.Thread(target=self.asset.contacts, args=(bones,))
+        worker = threading.Thread(target=self.model.penetrations, args=(bones,), kwargs=self.all)
         worker.start()
         turns = 0
         while worker.is_alive():
@@ -97,28 +130,29 @@ class Answers(unittest.TestCase):
 
     def test_vertices_give_the_contacts_that_bones_give(self):
         # The doll's vertices are the corners of its triangles, one after another.
-        numbers = np.repeat(np.arange(self.asset.triangle_count), 3)
-        vertices = self.asset.points(self.bones, numbers, np.tile(np.eye(3, dtype=np.float32), (len(numbers) // 3, 1)))
-        for own, other in zip(self.asset.contacts(vertices=vertices, threads=0), self.contacts):
-            np.testing.assert_array_equal(own.array[["part", "other", "kind"]], other.array[["part", "other", "kind"]])
-            np.testing.assert_allclose(own.array["depth"], other.array["depth"], atol=1e-6 * self.asset.height)
+        numbers = np.repeat(np.arange(self.model.triangle_count), 3)
+        vertices = self.model.points(self.bones, numbers, np.tile(np.eye(3, dtype=np.float32), (len(numbers) // 3, 1)))
+        for own, other in zip(self.model.penetrations(vertices=vertices, threads=0, **self.all), self.found):
+            own, other = (np.sort(found.array, order=["part", "other"]) for found in (own, other))
+            np.testing.assert_array_equal(own[["part", "other", "kind"]], other[["part", "other", "kind"]])
+            np.testing.assert_allclose(own["depth"], other["depth"], atol=1e-6 * self.model.height)
 
     def test_deepest_points_are_points_on_the_skin(self):
-        for bones, contacts in zip(self.bones, self.contacts):
+        for bones, contacts in zip(self.bones, self.found):
             for point in (contacts.array["deepest"], contacts.array["deepest_other"]):
-                places = self.asset.points(bones, point["triangle"], point["weights"])
-                np.testing.assert_allclose(places, point["position"], atol=1e-6 * self.asset.height)
+                places = self.model.points(bones, point["triangle"], point["weights"])
+                np.testing.assert_allclose(places, point["position"], atol=1e-6 * self.model.height)
 
     def test_morph_weights_move_skin_and_points_alike(self):
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder, "tiny.sphc")
             subprocess.run([WRITE_TINY, file], check=True)
-            tiny = spherechain.Asset(file)
+            tiny = spherechain.Model(file)
         self.assertEqual(len(tiny.morphs), 3)
         bones = random_poses(tiny, 5, 40)
         weights = np.random.default_rng(3).random((5, 3)).astype(np.float32)
-        found = tiny.contacts(bones, morph_weights=weights, threads=2)
-        self.assertNotEqual([c.array.tobytes() for c in found], [c.array.tobytes() for c in tiny.contacts(bones)])
+        found = tiny.penetrations(bones, morph_weights=weights, threads=2, **self.all)
+        self.assertNotEqual([c.array.tobytes() for c in found], [c.array.tobytes() for c in tiny.penetrations(bones, **self.all)])
         for pose, own, contacts in zip(bones, weights, found):
             self.assertGreater(len(contacts), 0)
             ends = [contacts.array[name] for name in ("deepest", "deepest_other")]
@@ -129,15 +163,15 @@ class Answers(unittest.TestCase):
             slopes = np.einsum("cbij,bij->c", tiny.depth_gradients(contacts, own), pose)
             np.testing.assert_allclose(slopes, contacts.array["depth"], atol=1e-4 * tiny.height)
 
-    def test_contacts_have_names_and_units(self):
-        names = {part.name for part in self.asset.parts}
-        for contacts in self.contacts:
+    def test_penetrations_have_names_and_units(self):
+        names = {part.name for part in self.model.parts}
+        for contacts in self.found:
             for contact, row in zip(contacts, contacts.array):
                 self.assertLessEqual({contact.part, contact.other}, names)
-                self.assertAlmostEqual(contact.depth_mm, row["depth"] * self.asset.metres_per_unit * 1000, 3)
+                self.assertAlmostEqual(contact.depth_mm, row["depth"] * self.model.metres_per_unit * 1000, 3)
                 self.assertEqual(contact.is_fault, contact.kind in ("penetration", "deep_fold"))
                 np.testing.assert_allclose(contact.point_other - contact.point, contact.distance * contact.direction,
-                                           atol=1e-6 * self.asset.height)
+                                           atol=1e-6 * self.model.height)
                 self.assertEqual(contact.distance, contact.depth)  # no frame before keeps a longer way
                 self.assertTrue((contact.low <= contact.high).all())
                 self.assertEqual(contact.volume is None, row["volume"] < 0)
@@ -145,10 +179,11 @@ class Answers(unittest.TestCase):
             self.assertAlmostEqual(contacts.depth_mm, deepest, 3)
 
     def test_at_rest_spheres_are_the_assets_and_nothing_touches(self):
-        rest = rest_pose(self.asset)
-        np.testing.assert_allclose(self.asset.spheres(rest), self.asset.rest_spheres, atol=1e-6 * self.asset.height)
-        self.assertEqual(self.asset.pairs(rest).shape, (0, 2))
-        self.assertEqual(len(self.asset.contacts(rest)), 0)
+        rest = rest_pose(self.model)
+        np.testing.assert_allclose(self.model.spheres(rest), self.model.rest_spheres, atol=1e-6 * self.model.height)
+        self.assertEqual(self.model.sphere_pairs(rest).shape, (0, 2))
+        self.assertEqual(len(self.model.contacts(rest)), 0)
+        self.assertEqual(len(self.model.penetrations(rest, **self.all)), 0)
 
 
 if __name__ == "__main__":

@@ -22,8 +22,8 @@ def assert_near(actual, expected, tolerance):
 class Gradients(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.asset = spherechain.Asset(DOLL)
-        cls.bones = random_poses(cls.asset, 12, 80, dtype=np.float64)
+        cls.model = spherechain.Model(DOLL)
+        cls.bones = random_poses(cls.model, 12, 80, dtype=np.float64)
         cls.single = cls.bones.astype(np.float32)
         cls.rng = np.random.default_rng(7)
 
@@ -37,66 +37,67 @@ class Gradients(unittest.TestCase):
 
     def test_of_the_spheres_energy_is_its_slope(self):
         for radius in ("detect", "fit"):
-            energy, gradient = self.asset.sphere_energy(self.bones, radius=radius)
+            energy, gradient = self.model.sphere_energy(self.bones, radius=radius)
             self.assertGreater((energy > 0).sum(), 6)
-            self.assert_is_slope(gradient, lambda bones: self.asset.sphere_energy(bones, radius=radius)[0], self.bones)
+            self.assert_is_slope(gradient, lambda bones: self.model.sphere_energy(bones, radius=radius)[0], self.bones)
 
     def test_of_given_spheres_is_its_slope(self):
-        spheres = self.asset.spheres(self.single).astype(np.float64)
-        _, gradient = self.asset.pair_energy(spheres)
-        self.assert_is_slope(gradient, lambda s: self.asset.pair_energy(s)[0], spheres)
+        spheres = self.model.spheres(self.single).astype(np.float64)
+        _, gradient = self.model.pair_energy(spheres)
+        self.assert_is_slope(gradient, lambda s: self.model.pair_energy(s)[0], spheres)
 
     def test_in_single_precision_is_that_in_double(self):
-        for own, exact in zip(self.asset.sphere_energy(self.single, threads=2), self.asset.sphere_energy(self.bones)):
+        for own, exact in zip(self.model.sphere_energy(self.single, threads=2), self.model.sphere_energy(self.bones)):
             self.assertEqual(own.dtype, np.float32)
             assert_near(own, exact, 1e-5)
 
     def test_a_loss_of_ones_own_gets_its_gradient_through_the_spheres(self):
-        loss_slopes = self.rng.normal(size=(12, self.asset.sphere_count, 4))
-        gradient = self.asset.spheres_vjp(self.bones, loss_slopes)
-        single = self.asset.spheres_vjp(self.single, loss_slopes.astype(np.float32))
+        loss_slopes = self.rng.normal(size=(12, self.model.sphere_count, 4))
+        gradient = self.model.spheres_vjp(self.bones, loss_slopes)
+        single = self.model.spheres_vjp(self.single, loss_slopes.astype(np.float32))
         assert_near(single, gradient, 1e-5)
         # Spheres come in single precision, so steps are large; centres are linear in the matrices, radii nearly.
         for _ in range(4):
             direction = self.rng.normal(size=self.bones.shape) / 10
-            ends = [self.asset.spheres((self.bones + sign * 0.01 * direction).astype(np.float32)) for sign in (1, -1)]
+            ends = [self.model.spheres((self.bones + sign * 0.01 * direction).astype(np.float32)) for sign in (1, -1)]
             expected = ((ends[0].astype(float) - ends[1]) * loss_slopes).sum((1, 2)) / 0.02
             assert_near((gradient * direction).sum((1, 2, 3)), expected, 1e-3)
 
     def test_the_energy_is_the_sum_of_squared_overlaps_and_above_zero_where_spheres_touch(self):
-        spheres = self.asset.spheres(self.single).astype(np.float64)
+        spheres = self.model.spheres(self.single).astype(np.float64)
         distances = np.linalg.norm(spheres[:, :, None, :3] - spheres[:, None, :, :3], axis=3)
-        reach = self.asset.pair_scales() * (spheres[:, :, None, 3] + spheres[:, None, :, 3])
+        reach = self.model.pair_scales() * (spheres[:, :, None, 3] + spheres[:, None, :, 3])
         expected = np.square(np.maximum(reach - distances, 0)).sum((1, 2)) / 2
-        energy, gradient = self.asset.sphere_energy(self.single)
+        energy, gradient = self.model.sphere_energy(self.single)
         np.testing.assert_allclose(energy, expected, rtol=1e-4, atol=1e-9)
-        np.testing.assert_array_equal(energy > 0, [len(pairs) > 0 for pairs in self.asset.pairs(self.single)])
+        np.testing.assert_array_equal(energy > 0, [len(pairs) > 0 for pairs in self.model.sphere_pairs(self.single)])
         np.testing.assert_array_equal(gradient[energy == 0], 0)
-        self.assertEqual(self.asset.sphere_energy(rest_pose(self.asset))[0], 0)
+        self.assertEqual(self.model.sphere_energy(rest_pose(self.model))[0], 0)
 
     def test_of_a_depth_is_the_slope_of_the_deepest_points_distance(self):
         seen = 0
-        for bones, contacts in zip(self.bones, self.asset.contacts(self.single)):
+        every = self.model.penetrations(self.single, detail="full", classes=spherechain.CLASSES)
+        for bones, contacts in zip(self.bones, every):
             if len(contacts) == 0:
                 continue
             a, b = contacts.array["deepest"], contacts.array["deepest_other"]
 
             def distances(at):
-                ends = [self.asset.points(at, p["triangle"], p["weights"].copy()) for p in (a, b)]
+                ends = [self.model.points(at, p["triangle"], p["weights"].copy()) for p in (a, b)]
                 return np.linalg.norm(ends[0] - ends[1], axis=-1)
 
-            gradients = self.asset.depth_gradients(contacts)
+            gradients = self.model.depth_gradients(contacts)
             direction = self.rng.normal(size=bones.shape)
             expected = slope_along(distances, bones, direction, 1e-7)
             # Of shallow contacts the points, in single precision, give the direction to few digits.
-            deep = contacts.array["depth"] > 0.01 * self.asset.height
+            deep = contacts.array["depth"] > 0.01 * self.model.height
             if deep.any():
                 assert_near((gradients * direction).sum((1, 2, 3))[deep], expected[deep], 1e-4)
             seen += deep.sum()
         self.assertGreater(seen, 12)
 
     def test_a_step_down_lowers_both_energies(self):
-        for energy_of in (self.asset.sphere_energy, self.asset.skin_energy):
+        for energy_of in (self.model.sphere_energy, self.model.skin_energy):
             energy, gradient = energy_of(self.single)
             used = energy > 0
             self.assertGreater(used.sum(), 4)
@@ -107,13 +108,13 @@ class Gradients(unittest.TestCase):
             self.assertLess(abs(np.median(after[used] / energy[used]) - 0.9), 0.02)
 
     def test_the_skins_energy_is_the_sum_of_squared_depths_of_its_kinds(self):
-        contacts = self.asset.contacts(self.single)
+        contacts = self.model.penetrations(self.single, detail="full", classes=spherechain.CLASSES)
         for kinds in (("penetration", "deep_fold"), ("touch", "fold")):
-            energy, gradient = self.asset.skin_energy(self.single, kinds=kinds, threads=2)
+            energy, gradient = self.model.skin_energy(self.single, detail="full", classes=kinds, threads=2)
             for i, found in enumerate(contacts):
                 depths = np.array([c.depth if c.kind in kinds else 0 for c in found], np.float32)
                 self.assertAlmostEqual(energy[i], np.square(depths).sum(), delta=1e-5 * energy.max())
-                expected = np.tensordot(2 * depths, self.asset.depth_gradients(found), 1)
+                expected = np.tensordot(2 * depths, self.model.depth_gradients(found), 1)
                 np.testing.assert_allclose(gradient[i], expected, rtol=1e-5, atol=1e-6 * np.abs(gradient).max())
 
 

@@ -20,8 +20,8 @@ from paths import DOLL, PAPER_DOLL
 
 class Refusals(unittest.TestCase):
     def setUp(self):
-        self.asset = spherechain.Asset(DOLL)
-        self.rest = rest_pose(self.asset)
+        self.model = spherechain.Model(DOLL)
+        self.rest = rest_pose(self.model)
 
     def refuses(self, error, text, function, *arguments, **options):
         with self.assertRaisesRegex(error, text):
@@ -29,18 +29,18 @@ class Refusals(unittest.TestCase):
 
     def test_files(self):
         data = DOLL.read_bytes()
-        self.refuses(FileNotFoundError, "nowhere.sphc", spherechain.Asset, "nowhere.sphc")
-        self.refuses(TypeError, "a path or bytes, not int", spherechain.Asset, 5)
+        self.refuses(FileNotFoundError, "nowhere.sphc", spherechain.Model, "nowhere.sphc")
+        self.refuses(TypeError, "a path or bytes, not int", spherechain.Model, 5)
         with tempfile.TemporaryDirectory() as folder:
             for name, content, text in (("short.sphc", data[:5000], "short.sphc: "), ("empty.sphc", b"", "empty.sphc: "),
                                         ("text.sphc", b"hello" * 99, "text.sphc: ")):
                 Path(folder, name).write_bytes(content)
-                self.refuses(ValueError, text, spherechain.Asset, Path(folder, name))
-        self.refuses(ValueError, "asset: ", spherechain.Asset, data[1:])
+                self.refuses(ValueError, text, spherechain.Model, Path(folder, name))
+        self.refuses(ValueError, "asset: ", spherechain.Model, data[1:])
 
     def test_poses(self):
-        every = (self.asset.spheres, self.asset.pairs, self.asset.contacts, self.asset.sphere_energy,
-                 self.asset.skin_energy)
+        every = (self.model.spheres, self.model.sphere_pairs, self.model.contacts, self.model.penetrations,
+                 self.model.bounds, self.model.sphere_energy, self.model.skin_energy)
         broken = self.rest.copy()
         broken[3, 1, 2] = np.nan
         endless = np.stack([self.rest, broken])
@@ -49,7 +49,7 @@ class Refusals(unittest.TestCase):
             self.refuses(TypeError, r"bones is int64: pass float32", function, self.rest.astype(np.int64))
             self.refuses(TypeError, "bones is object|bones is <U", function, "bones")
             self.refuses(TypeError, "bones is object", function, [None])
-            self.refuses(ValueError, rf"bones has the shape .*: pass \(..., {len(self.asset.bones)}, 3, 4\)", function,
+            self.refuses(ValueError, rf"bones has the shape .*: pass \(..., {len(self.model.bones)}, 3, 4\)", function,
                          self.rest[1:])
             self.refuses(ValueError, "shape", function, self.rest[..., :3])
             self.refuses(ValueError, "shape", function, self.rest[0])
@@ -57,70 +57,94 @@ class Refusals(unittest.TestCase):
             self.refuses(ValueError, r"bones\[1, 3, 1, 2\] is inf", function, endless)
             for threads in (-1, 1.5, True, 5000):
                 self.refuses(ValueError, "threads is", function, self.rest, threads=threads)
-        self.refuses(TypeError, r"astype\(float32\)", self.asset.spheres, self.rest.astype(np.float64))
+        self.refuses(TypeError, r"astype\(float32\)", self.model.spheres, self.rest.astype(np.float64))
         far = self.rest.copy()
         far[0, 0, 3] = 1e30  # its spheres would touch nothing, and lower the energy
-        self.refuses(ValueError, r"bones\[0, 0, 3\] is 1", self.asset.sphere_energy, far)
-        self.refuses(AttributeError, "height cannot be set", setattr, self.asset, "height", 1)
-        self.refuses(ValueError, "radius is 'big': pass one of detect, fit", self.asset.spheres, self.rest, radius="big")
+        self.refuses(ValueError, r"bones\[0, 0, 3\] is 1", self.model.sphere_energy, far)
+        self.refuses(AttributeError, "height cannot be set", setattr, self.model, "height", 1)
+        self.refuses(ValueError, "radius is 'big': pass one of detect, fit", self.model.spheres, self.rest, radius="big")
 
     def test_a_pose_that_is_not_the_bind_pose(self):
         model = np.eye(4, dtype=np.float32)
         model[:3, :3], model[:3, 3] = rotations(np.array([[0.3, 0.9, -0.2]]))[0], (5, 6, 7)
-        bones = np.tile(model, (2, len(self.asset.bones), 1, 1))
-        self.asset.check_rest(self.rest)
-        self.asset.check_rest(bones)
+        bones = np.tile(model, (2, len(self.model.bones), 1, 1))
+        self.model.check_rest(self.rest)
+        self.model.check_rest(bones)
         moved = bones.copy()
-        moved[1, 3, 0, 3] += 0.01 * self.asset.height
-        name = re.escape(self.asset.bones[3].name)
-        self.refuses(ValueError, f'^bone "{name}": its matrix is not that of .*bind pose', self.asset.check_rest, moved)
-        bind = np.stack([bone.inverse_bind for bone in self.asset.bones])  # world matrices, not skinning matrices
-        self.refuses(ValueError, '^bone "', self.asset.check_rest, bind)
-        self.refuses(ValueError, "transposed", self.asset.check_rest, bones.swapaxes(2, 3))
-        self.refuses(ValueError, "bones has the shape", self.asset.check_rest, self.rest[1:])
+        moved[1, 3, 0, 3] += 0.01 * self.model.height
+        name = re.escape(self.model.bones[3].name)
+        self.refuses(ValueError, f'^bone "{name}": its matrix is not that of .*bind pose', self.model.check_rest, moved)
+        bind = np.stack([bone.inverse_bind for bone in self.model.bones])  # world matrices, not skinning matrices
+        self.refuses(ValueError, '^bone "', self.model.check_rest, bind)
+        self.refuses(ValueError, "transposed", self.model.check_rest, bones.swapaxes(2, 3))
+        self.refuses(ValueError, "bones has the shape", self.model.check_rest, self.rest[1:])
 
     def test_an_interrupt_ends_a_batch(self):
-        poses = np.repeat(heap(self.asset)[None], 400, 0)
+        poses = np.repeat(heap(self.model)[None], 400, 0)
         handler = signal.signal(signal.SIGINT, signal.default_int_handler)
         self.addCleanup(signal.signal, signal.SIGINT, handler)
         for threads in (1, 2):
             start = time.process_time()
             threading.Timer(0.1, _thread.interrupt_main).start()
             with self.assertRaises(KeyboardInterrupt):
-                self.asset.contacts(poses, threads=threads)
+                self.model.penetrations(poses, threads=threads, detail="full", classes=spherechain.CLASSES)
             self.assertLess(time.process_time() - start, 5, "seconds of the processor; the batch would take 40")
 
     def test_contacts(self):
-        vertices = np.zeros((self.asset.vertex_count, 3), np.float32)
-        self.refuses(TypeError, "one of the two", self.asset.contacts)
-        self.refuses(TypeError, "one of the two", self.asset.contacts, self.rest, vertices=vertices)
-        self.refuses(ValueError, "vertices has the shape", self.asset.contacts, vertices=vertices[1:])
-        self.refuses(ValueError, "no morph targets", self.asset.contacts, self.rest, morph_weights=vertices[0])
-        self.refuses(ValueError, "scope is 'near'", self.asset.contacts, self.rest, scope="near")
-        self.refuses(ValueError, "kinds is 'bad'", self.asset.skin_energy, self.rest, kinds=["bad"])
-        self.refuses(ValueError, "triangles has numbers", self.asset.points, self.rest, [self.asset.triangle_count],
+        vertices = np.zeros((self.model.vertex_count, 3), np.float32)
+        self.refuses(TypeError, "one of the two", self.model.contacts)
+        self.refuses(TypeError, "one of the two", self.model.contacts, self.rest, vertices=vertices)
+        self.refuses(ValueError, "vertices has the shape", self.model.contacts, vertices=vertices[1:])
+        self.refuses(ValueError, "no morph targets", self.model.contacts, self.rest, morph_weights=vertices[0])
+        self.refuses(ValueError, "scope is 'near'", self.model.contacts, self.rest, scope="near")
+        self.refuses(ValueError, "classes is 'bad'", self.model.skin_energy, self.rest, classes=["bad"])
+        self.refuses(ValueError, "classes is empty", self.model.penetrations, self.rest, classes=[])
+        self.refuses(ValueError, "detail is 'best'", self.model.penetrations, self.rest, detail="best")
+        self.refuses(TypeError, "quick is no option: scope, detail", self.model.penetrations, self.rest, quick=True)
+        self.refuses(ValueError, "limit is -1", self.model.penetrations, self.rest, limit=-1)
+        self.refuses(ValueError, r"part_pairs has \(0, 99\)", self.model.contacts, self.rest, part_pairs=[(0, 99)])
+        self.refuses(ValueError, "ignored_parts", self.model.contacts, self.rest, ignored_parts=[0])  # of one body
+        self.refuses(ValueError, "touch_depth|rule", self.model.penetrations, self.rest,
+                     rule=spherechain.Rule(touch_depth=np.nan))
+        two = np.stack([self.rest, self.rest])
+        self.refuses(ValueError, "other has not 1 poses", self.model.contacts, self.rest,
+                     other=spherechain.Posed(self.model, two))
+        self.refuses(ValueError, "as many before", self.model.steps, self.rest, self.rest,
+                     other=spherechain.Posed(self.model, self.rest))
+        self.refuses(ValueError, "bones_before has 2 poses, bones 1", self.model.steps, two, self.rest)
+        self.refuses(ValueError, "floor|ground", self.model.below, (0, 3, 0), 0, self.rest)
+        self.refuses(ValueError, "triangles has numbers", self.model.points, self.rest, [self.model.triangle_count],
                      np.ones((1, 3), np.float32))
-        self.refuses(ValueError, "pass integers", self.asset.points, self.rest, [0.5], np.ones((1, 3), np.float32))
-        self.refuses(ValueError, "weights has the shape", self.asset.points, self.rest, [1], np.ones((2, 3), np.float32))
+        self.refuses(ValueError, "pass integers", self.model.points, self.rest, [0.5], np.ones((1, 3), np.float32))
+        self.refuses(ValueError, "weights has the shape", self.model.points, self.rest, [1], np.ones((2, 3), np.float32))
 
     def test_gradients(self):
-        slopes = np.zeros((self.asset.sphere_count, 4), np.float32)
-        self.refuses(TypeError, "gradient is float64", self.asset.spheres_vjp, self.rest, slopes.astype(np.float64))
-        self.refuses(ValueError, "gradient has the shape", self.asset.spheres_vjp, self.rest, slopes[1:])
-        self.refuses(ValueError, "spheres has the shape", self.asset.pair_energy, slopes[1:])
+        slopes = np.zeros((self.model.sphere_count, 4), np.float32)
+        self.refuses(TypeError, "gradient is float64", self.model.spheres_vjp, self.rest, slopes.astype(np.float64))
+        self.refuses(ValueError, "gradient has the shape", self.model.spheres_vjp, self.rest, slopes[1:])
+        self.refuses(ValueError, "spheres has the shape", self.model.pair_energy, slopes[1:])
 
     def test_an_asset_whose_spheres_follow_vertices_alone(self):
-        paper = spherechain.Asset(PAPER_DOLL)
+        paper = spherechain.Model(PAPER_DOLL)
         for function in (paper.spheres, paper.sphere_energy):
             self.refuses(ValueError, "pose.bones", function, rest_pose(paper))
 
     def test_the_module_itself_reads_nothing_out_of_bounds(self):
-        native = _native.Asset(DOLL.read_bytes())
-        short = np.zeros((2, len(self.asset.bones) - 1, 3, 4), np.float32)
+        native = _native.Model(DOLL.read_bytes())
+        short = np.zeros((2, len(self.model.bones) - 1, 3, 4), np.float32)
         overlapping = np.lib.stride_tricks.as_strided(self.rest, (1, *self.rest.shape), (0, 4, 16, 4))
         for bones in (short, overlapping, self.rest):
             self.refuses((ValueError, TypeError), "bones|incompatible", native.spheres, bones, 0, 1)
             self.refuses((ValueError, TypeError), "bones|incompatible", native.sphere_energy, bones, 0, 1)
+        query = self.model._query({}, None, None)
+        good = (self.rest[None], None, None)
+        for poses in ((short, None, None), (overlapping, None, None), (None, self.rest[None], None)):
+            self.refuses((ValueError, TypeError), "bones|vertices", native.ask, 0, poses, query, None, None, None, None, 1)
+        self.refuses(ValueError, "before", native.ask, 2, good, query, None, None, None, None, 1)
+        self.refuses(ValueError, "others", native.ask, 0, good, query, native, None, None, None, 1)
+        self.refuses(ValueError, "bits", native.ask, 0, good, {**query, "part_pairs": np.zeros(1, np.uint64)}, None, None,
+                     None, None, 1)
+        self.refuses(ValueError, "rule", native.ask, 0, good, {**query, "rule": [1.0]}, None, None, None, None, 1)
         self.refuses(ValueError, "first", native.depth_gradients, np.zeros(0, np.uint8), np.array([0, 9], np.uint64),
                      np.zeros(0, np.float32), None)
         self.refuses(ValueError, "first", native.depth_gradients, np.zeros(0, np.uint8), np.zeros(0, np.uint64),
@@ -128,7 +152,7 @@ class Refusals(unittest.TestCase):
 
     def test_types_name_all_that_the_module_has(self):
         stub = Path(spherechain.__file__).with_name("_native.pyi").read_text()
-        names = {name for name in dir(_native.Asset) if not name.startswith("_")}
+        names = {name for name in dir(_native.Model) if not name.startswith("_")}
         self.assertEqual(set(re.findall(r"def (\w+)\(\s*self", stub)) - {"__init__"}, names)
 
 

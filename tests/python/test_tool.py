@@ -27,11 +27,11 @@ class Tool(unittest.TestCase):
     def test_bakes_with_settings_and_checks(self):
         with tempfile.TemporaryDirectory() as folder:
             output, preview = Path(folder, "doll.sphc"), Path(folder, "doll.glb")
-            asset, report = spherechain.bake(DOLL_MESH, output, tool=TOOL, extremities=False, penetration_depth=0.2,
+            model, report = spherechain.bake(DOLL_MESH, output, tool=TOOL, extremities=False, penetration_depth=0.2,
                                              preview=preview)
-            self.assertEqual(spherechain.Asset(output).sphere_count, asset.sphere_count)
-            self.assertIn('"penetration_depth":0.2', asset.settings)
-            self.assertIn('"extremities":false', asset.settings)
+            self.assertEqual(spherechain.Model(output).sphere_count, model.sphere_count)
+            self.assertIn('"penetration_depth":0.2', model.settings)
+            self.assertIn('"extremities":false', model.settings)
             self.assertEqual(report["missed_targets"], [])
             result = spherechain.check(preview, tool=TOOL, output=Path(folder, "report"), max_depth=5)
             self.assertEqual(result["summary"]["characters"], 1)

@@ -38,7 +38,7 @@ class Wheel(unittest.TestCase):
             environment = {**os.environ, "PIP_ROOT_USER_ACTION": "ignore"}
             subprocess.run(pip, check=True, capture_output=True, env=environment)
             asset = ROOT / "tests" / "golden" / "doll.sphc"
-            code = f"import spherechain; print(spherechain.__file__, spherechain.Asset({str(asset)!r}).sphere_count)"
+            code = f"import spherechain; print(spherechain.__file__, spherechain.Model({str(asset)!r}).sphere_count)"
             done = subprocess.run([sys.executable, "-c", code], env={**environment, "PYTHONPATH": str(target)}, text=True,
                                   capture_output=True, check=True)
             self.assertEqual(done.stdout.split(), [str(target / "spherechain" / "__init__.py"), "64"])

@@ -51,7 +51,7 @@ struct CrowdGroup {
   std::size_t instance_stride = 0;  // bytes between bones, a multiple of 4; or entries between spheres. 0: side by side
 
   // Out. Each may be null.
-  Sphere* refitted = nullptr;       // from bones: the asset's spheres for each instance, without the filter's padding
+  Sphere* refitted = nullptr;       // from bones: the asset's spheres for each instance
   std::uint32_t* counts = nullptr;  // the number of pairs of each instance
   std::uint64_t* bits = nullptr;    // sc_pair_words() words for each instance: bit b(b-1)/2 + a of each pair
 

@@ -1,18 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""Self-collision of skinned characters: spheres, pairs, exact skin contacts with depth, and losses with gradients.
+"""Self-collision of skinned characters: spheres, exact contacts, penetrations with depth, and losses with gradients.
 
-    asset = spherechain.Asset("human.sphc")
-    contacts = asset.contacts(bones)              # bones: float32 (bones, 3, 4)
-    energy, gradient = asset.sphere_energy(clip)  # clip: float32 (frames, bones, 3, 4)
+    model = spherechain.Model("human.sphc")
+    faults = model.penetrations(bones)            # bones: float32 (bones, 3, 4)
+    energy, gradient = model.sphere_energy(clip)  # clip: float32 (frames, bones, 3, 4)
 
 For PyTorch: spherechain.torch.
 """
 
-from ._asset import Asset, Bone, Part
-from ._contacts import PENETRATION, TRIANGLE_PAIR, Contact, Contacts
+from ._answers import (CLASSES, FAULTS, PART_CONTACT, PENETRATION, SPHERE_PAIR, STEP, TRIANGLE_PAIR, Contacts, PartContact,
+                       Penetration, Penetrations, Rule, Step, Steps)
+from ._model import Bone, Model, Part, Posed, Query
 from ._tool import Baked, ToolError, bake, check
 
 from ._native import VERSION as __version__
 
-__all__ = ["Asset", "Baked", "Bone", "Contact", "Contacts", "PENETRATION", "Part", "TRIANGLE_PAIR", "ToolError", "bake",
-           "check"]
+__all__ = ["Baked", "Bone", "CLASSES", "Contacts", "FAULTS", "Model", "PART_CONTACT", "PENETRATION", "Part", "PartContact",
+           "Penetration", "Penetrations", "Posed", "Query", "Rule", "SPHERE_PAIR", "STEP", "Step", "Steps", "TRIANGLE_PAIR",
+           "ToolError", "bake", "check"]

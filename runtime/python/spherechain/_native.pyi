@@ -5,14 +5,18 @@ from numpy.typing import NDArray
 
 PENETRATION_BYTES: int
 TRIANGLE_BYTES: int
+CONTACT_BYTES: int
+STEP_BYTES: int
 VERSION: str
 
 Number = TypeVar("Number", np.float32, np.float64)
 Bytes = NDArray[np.uint8]
+Poses = Tuple[Optional[NDArray[np.float32]], Optional[NDArray[np.float32]], Optional[NDArray[np.float32]]]
 
 def class_name(kind: int) -> str: ...
+def default_rule() -> list[float]: ...
 
-class Asset:
+class Model:
     def __init__(self, data: bytes) -> None: ...
     def bytes(self) -> bytes: ...
     def info(self) -> dict[str, Any]: ...
@@ -20,16 +24,18 @@ class Asset:
     def pair_scales(self, radius: int) -> NDArray[np.float32]: ...
     def spheres(self, bones: NDArray[np.float32], radius: int, threads: int) -> NDArray[np.float32]: ...
     def pairs(self, bones: NDArray[np.float32], radius: int, threads: int) -> Tuple[Bytes, Bytes]: ...
-    def contacts(
+    def triangle(self, number: int) -> Optional[Tuple[int, int, int]]: ...
+    def ask(
         self,
-        bones: Optional[NDArray[np.float32]],
-        vertices: Optional[NDArray[np.float32]],
-        morph_weights: Optional[NDArray[np.float32]],
-        scope: int,
-        quick: bool,
-        lists_triangles: bool,
+        question: int,
+        poses: Poses,
+        query: dict[str, Any],
+        other: Optional["Model"],
+        others: Optional[Poses],
+        before: Optional[Poses],
+        others_before: Optional[Poses],
         threads: int,
-    ) -> Tuple[Bytes, Bytes, Bytes, Bytes]: ...
+    ) -> Tuple[list[Tuple[Bytes, Bytes]], Bytes]: ...
     def depth_gradients(
         self,
         penetrations: Bytes,

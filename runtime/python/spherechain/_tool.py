@@ -11,7 +11,7 @@ import tempfile
 from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Optional, Union
 
-from ._asset import Asset
+from ._model import Model
 
 PathLike = Union[str, "os.PathLike[str]"]
 
@@ -29,7 +29,7 @@ class ToolError(RuntimeError):
 
 
 class Baked(NamedTuple):
-    asset: Asset
+    model: Model
     report: Dict[str, Any]  #: as docs/json.md has it; `missed_targets` says what was asked for in vain
 
 
@@ -52,7 +52,7 @@ def bake(path: PathLike, output: Optional[PathLike] = None, *, tool: Optional[Pa
             config.write_text(json.dumps(settings))
             options["config"] = config
         _run(tool, arguments + _options(options), _TARGET_MISSED)
-        return Baked(Asset(asset), json.loads(report.read_text()))
+        return Baked(Model(asset), json.loads(report.read_text()))
 
 
 def check(*library: PathLike, output: Optional[PathLike] = None, tool: Optional[PathLike] = None,

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import torch
 
-from ._asset import Asset
+from ._model import Model
 
 
 class _Loss(torch.autograd.Function):
@@ -33,11 +33,11 @@ class _Gradient(torch.autograd.Function):
         raise RuntimeError("spherechain.torch: a loss has no second derivative")
 
 
-def sphere_energy(asset: Asset, bones: torch.Tensor, **options) -> torch.Tensor:
-    """Asset.sphere_energy() of a float32 or float64 tensor (..., bones, 3, 4): a tensor (...) that has a gradient."""
-    return _Loss.apply(bones, lambda array: asset.sphere_energy(array, **options))
+def sphere_energy(model: Model, bones: torch.Tensor, **options) -> torch.Tensor:
+    """Model.sphere_energy() of a float32 or float64 tensor (..., bones, 3, 4): a tensor (...) that has a gradient."""
+    return _Loss.apply(bones, lambda array: model.sphere_energy(array, **options))
 
 
-def skin_energy(asset: Asset, bones: torch.Tensor, **options) -> torch.Tensor:
-    """Asset.skin_energy() of a float32 tensor (..., bones, 3, 4): a tensor (...) that has a gradient."""
-    return _Loss.apply(bones, lambda array: asset.skin_energy(array, **options))
+def skin_energy(model: Model, bones: torch.Tensor, **options) -> torch.Tensor:
+    """Model.skin_energy() of a float32 tensor (..., bones, 3, 4): a tensor (...) that has a gradient."""
+    return _Loss.apply(bones, lambda array: model.skin_energy(array, **options))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "contacts.h"
 
+#include <memory>
 #include <stdexcept>
 
 #include "parallel.h"
@@ -8,127 +9,125 @@
 namespace spherechain::python {
 namespace {
 
-constexpr std::size_t kFirstTriangles = 1024, kFirstPenetrations = 32;
-
-// Of one thread.
-class ContactFinder {
+// The bodies of one thread.
+class Asker {
  public:
-  ContactFinder(const LoadedAsset& asset, const SkinPoses& poses, const ContactOptions& options)
-      : asset_(asset), poses_(poses), options_(options), memory_(asset.take_memory()) {
-    if (memory_->skin.size() == 0) {
-      memory_->skin = Words(sc_skin_scratch_words(&asset.asset()));
-      memory_->triangles.resize(kFirstTriangles);
-      memory_->penetrations.resize(kFirstPenetrations);
+  Asker(const LoadedAsset& asset, const SkinPoses& poses, const Asked& asked)
+      : asset_(asset), poses_(poses), asked_(asked), body_(take(asset, asked.other, 0)) {
+    if (asked.other != nullptr) {
+      other_ = take(*asked.other, &asset, 0);
     }
   }
-  ContactFinder(ContactFinder&&) = default;
-  ~ContactFinder() {
-    if (memory_) {
-      asset_.give_back(std::move(memory_));
+  Asker(Asker&&) = default;
+  ~Asker() {
+    const bool is_kept = asked_.question != Question::kSteps && (asked_.other == nullptr || asked_.other == &asset_);
+    if (body_ && is_kept && !is_wide_) {
+      asset_.give_back(std::move(body_));
+    }
+    if (other_ && is_kept) {
+      asset_.give_back(std::move(other_));
     }
   }
 
-  void find(std::size_t i, std::vector<Penetration>& penetrations, std::vector<TriangleContact>* triangles) {
-    const sc_pose pose = pose_of(i);
-    const std::size_t count = find_triangles(pose);
-    const auto first = memory_->triangles.begin();
-    if (triangles != nullptr) {
-      triangles->assign(first, first + static_cast<std::ptrdiff_t>(count));
+  // Appends the answers about a pose.
+  void ask(std::size_t i, std::vector<std::uint8_t> (&lists)[3], std::size_t& total) {
+    set_poses(i);
+    switch (asked_.question) {
+      case Question::kContacts: {
+        const Contacts found = find_contacts(i, asked_.query);
+        append(found.parts, found.part_count, lists[0]);
+        append(found.spheres, found.sphere_count, lists[1]);
+        append(found.triangles, found.triangle_count, lists[2]);
+        total = found.part_count;
+        break;
+      }
+      case Question::kSteps: {
+        const Steps found = other_ ? body_->steps(*other_, asked_.query) : body_->steps(asked_.query);
+        append(found.items, found.count, lists[0]);
+        total = found.count;
+        break;
+      }
+      case Question::kBounds: {
+        Vec3 corners[2];
+        body_->bounds(corners[0], corners[1]);
+        append(corners, 2, lists[0]);
+        break;
+      }
+      default: {
+        if (asked_.question == Question::kPenetrations) {
+          Query wide = asked_.query;
+          wide.detail = SC_DETAIL_FULL;
+          find_contacts(i, wide);  // two parts that have more triangles than a body has room for are measured whole
+        }
+        const Penetrations found = asked_.question == Question::kGround ? body_->below(asked_.ground, asked_.query)
+                                   : other_                             ? body_->penetrations(*other_, asked_.query)
+                                                                        : body_->penetrations(asked_.query);
+        append(found.items, found.count, lists[0]);
+        total = found.total;
+      }
     }
-    if (count > 0) {
-      measure(pose, count, penetrations);
-    }
+    require(body_->status());
   }
 
  private:
-  sc_pose pose_of(std::size_t i) const {
-    sc_pose pose;
-    const AssetInfo& info = asset_.info();
-    if (poses_.bones.data != nullptr) {
-      pose = python::pose_of(asset_, poses_.bones, i);
-      if (poses_.morph_weights != nullptr) {
-        pose.morph_weights = poses_.morph_weights + i * info.morph_count;
+  std::unique_ptr<Body> take(const LoadedAsset& asset, const LoadedAsset* other, std::size_t max_triangles) const {
+    return asset.take_body(other, asked_.question == Question::kSteps, max_triangles);
+  }
+
+  static void set_pose(Body& body, const LoadedAsset& asset, const SkinPoses& poses, std::size_t i) {
+    const AssetInfo& info = asset.info();
+    Pose pose;
+    if (poses.bones.data != nullptr) {
+      pose = python::pose_of(asset, poses.bones, i);
+      if (poses.morph_weights != nullptr) {
+        pose.morph_weights = poses.morph_weights + i * info.morph_count;
         pose.morph_weight_count = info.morph_count;
       }
     } else {
-      pose.vertices = poses_.vertices + 3 * i * info.vertex_count;
+      pose.vertices = poses.vertices + 3 * i * info.vertex_count;
       pose.vertex_count = info.vertex_count;
     }
-    return pose;
+    require(body.set_pose(pose));
   }
 
-  // Into the memory; returns how many there are.
-  std::size_t find_triangles(const sc_pose& pose) {
-    SkinContactJob job;
-    job.asset = &asset_.asset();
-    job.pose = pose;
-    job.scope = options_.scope;
-    job.skin_table = asset_.skin_table();
-    job.scratch = memory_->skin.data();
-    job.scratch_words = memory_->skin.size();
-    const auto run = [&] {
-      job.triangles = memory_->triangles.data();
-      job.triangle_capacity = memory_->triangles.size();
-      return job.run();
-    };
-    Status status = run();
-    if (status == SC_OVERFLOW) {
-      memory_->triangles.resize(job.triangle_count);
-      status = run();
+  void set_poses(std::size_t i) {
+    if (asked_.question == Question::kSteps) {
+      set_pose(*body_, asset_, asked_.before, i);
     }
-    require(status);
-    return job.triangle_count;
+    set_pose(*body_, asset_, poses_, i);
+    if (other_ && asked_.question == Question::kSteps) {
+      set_pose(*other_, *asked_.other, asked_.others_before, i);
+    }
+    if (other_) {
+      set_pose(*other_, *asked_.other, asked_.others, i);
+    }
   }
 
-  void measure(const sc_pose& pose, std::size_t contact_count, std::vector<Penetration>& out) {
-    PenetrationJob job;
-    job.asset = &asset_.asset();
-    job.pose = pose;
-    job.scope = options_.scope;
-    job.skin_table = asset_.skin_table();
-    job.contacts = memory_->triangles.data();
-    job.contact_count = contact_count;
-    job.quick = options_.quick ? 1 : 0;
-    const std::size_t words = sc_penetration_scratch_words(&asset_.asset(), contact_count);
-    if (memory_->depth.size() < words) {
-      memory_->depth = Words(words);
+  // With a larger body where one has no room for all triangles.
+  Contacts find_contacts(std::size_t i, const Query& query) {
+    const auto find = [&] { return other_ ? body_->contacts(*other_, query) : body_->contacts(query); };
+    Contacts found = find();
+    if (found.triangle_count < found.triangle_total) {
+      body_ = take(asset_, asked_.other, 2 * found.triangle_total);
+      is_wide_ = true;
+      set_pose(*body_, asset_, poses_, i);
+      found = find();
     }
-    job.scratch = memory_->depth.data();
-    job.scratch_words = memory_->depth.size();
-    const auto run = [&] {
-      job.penetrations = memory_->penetrations.data();
-      job.penetration_capacity = memory_->penetrations.size();
-      return job.run();
-    };
-    Status status = run();
-    if (status == SC_OVERFLOW) {
-      memory_->penetrations.resize(job.penetration_count);
-      status = run();
-    }
-    require(status);
-    const auto first = memory_->penetrations.begin();
-    out.assign(first, first + static_cast<std::ptrdiff_t>(job.penetration_count));
+    return found;
+  }
+
+  template <typename T>
+  static void append(const T* entries, std::size_t count, std::vector<std::uint8_t>& out) {
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(entries);
+    out.insert(out.end(), bytes, bytes + count * sizeof(T));
   }
 
   const LoadedAsset& asset_;
   const SkinPoses& poses_;
-  const ContactOptions& options_;
-  std::unique_ptr<ContactMemory> memory_;
+  const Asked& asked_;
+  std::unique_ptr<Body> body_, other_;
+  bool is_wide_ = false;
 };
-
-template <typename T>
-Runs<T> join(const std::vector<std::vector<T>>& lists) {
-  Runs<T> out;
-  out.first.push_back(0);
-  for (const std::vector<T>& list : lists) {
-    out.first.push_back(out.first.back() + list.size());
-  }
-  out.entries.reserve(out.first.back());
-  for (const std::vector<T>& list : lists) {
-    out.entries.insert(out.entries.end(), list.begin(), list.end());
-  }
-  return out;
-}
 
 // A point on the skin is the sum over bones of matrix times (x, y, z, w).
 struct PointTerm {
@@ -199,15 +198,25 @@ const float* morphs_of(const LoadedAsset& asset, const float* morph_weights, std
 
 }  // namespace
 
-FoundContacts find_contacts(const LoadedAsset& asset, const SkinPoses& poses, const ContactOptions& options) {
-  std::vector<std::vector<Penetration>> penetrations(poses.count);
-  std::vector<std::vector<TriangleContact>> triangles(options.lists_triangles ? poses.count : 0);
-  for_each_pose(poses.count, options.threads, [&] {
-    return [&, finder = ContactFinder(asset, poses, options)](std::size_t i) mutable {
-      finder.find(i, penetrations[i], options.lists_triangles ? &triangles[i] : nullptr);
-    };
+Answers ask(const LoadedAsset& asset, const SkinPoses& poses, const Asked& asked, std::size_t threads) {
+  struct OfPose {
+    std::vector<std::uint8_t> lists[3];
+  };
+  std::vector<OfPose> found(poses.count);
+  Answers out;
+  out.totals.resize(poses.count);
+  for_each_pose(poses.count, threads, [&] {
+    return
+        [&, asker = Asker(asset, poses, asked)](std::size_t i) mutable { asker.ask(i, found[i].lists, out.totals[i]); };
   });
-  return {join(penetrations), join(triangles)};
+  for (std::size_t k = 0; k < 3; ++k) {
+    Runs& all = out.lists[k];
+    for (const OfPose& one : found) {
+      all.bytes.insert(all.bytes.end(), one.lists[k].begin(), one.lists[k].end());
+      all.first.push_back(all.bytes.size());
+    }
+  }
+  return out;
 }
 
 template <typename T>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The skin's contacts of a batch, and their gradients.
+// Questions about a batch of poses, and the gradients of depths.
 #pragma once
 
 #include "loaded_asset.h"
@@ -15,25 +15,31 @@ struct SkinPoses {
   const float* morph_weights = nullptr;  // null: none; of each target, pose by pose
 };
 
-struct ContactOptions {
-  Scope scope;
-  bool quick, lists_triangles;
-  std::size_t threads;
+enum class Question { kPenetrations, kContacts, kSteps, kGround, kBounds };
+
+struct Asked {
+  Question question;
+  Query query;
+  const LoadedAsset* other = nullptr;  // null: each pose with itself
+  SkinPoses others;                    // as many poses as asked about, of `other`
+  SkinPoses before, others_before;     // of steps: where they come from
+  Ground ground;
 };
 
-// A pose's entries after another's; first[i] is where those of pose i start, the last where all end.
-template <typename T>
+// Entries of a pose after another's, as bytes; first[i] is where those of pose i start, the last where all end.
 struct Runs {
-  std::vector<T> entries;
-  std::vector<std::size_t> first;
+  std::vector<std::uint8_t> bytes;
+  std::vector<std::size_t> first{0};
 };
 
-struct FoundContacts {
-  Runs<Penetration> penetrations;
-  Runs<TriangleContact> triangles;  // where asked for
+// Penetrations, steps, or the two corners of a box; of contacts body parts, spheres and triangles. `totals` has of each
+// pose how many there are, where a limit lists fewer.
+struct Answers {
+  Runs lists[3];
+  std::vector<std::size_t> totals;
 };
 
-FoundContacts find_contacts(const LoadedAsset& asset, const SkinPoses& poses, const ContactOptions& options);
+Answers ask(const LoadedAsset& asset, const SkinPoses& poses, const Asked& asked, std::size_t threads);
 
 // Points on the skin: a source triangle and the weights of its corners.
 struct SkinPoints {

@@ -6,6 +6,7 @@
 #include "moment_pass.h"
 #include "pairs.h"
 #include "parallel.h"
+#include "refit/refit_job.h"
 
 namespace spherechain::python {
 namespace {

@@ -5,6 +5,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <array>
 #include <stdexcept>
 
 #include "contacts.h"
@@ -115,27 +116,110 @@ py::tuple pairs(const LoadedAsset& asset, const Array<float>& bones, int radius,
   return py::make_tuple(bytes_of(std::move(all)), bytes_of(std::move(first)));
 }
 
-py::tuple contacts(const LoadedAsset& asset, const py::object& bones, const py::object& vertices,
-                   const py::object& morph_weights, int scope, bool quick, bool lists_triangles, std::size_t threads) {
+// Poses of a batch by bones, morph weights and vertices, with the arrays that they lie in.
+struct GivenPoses {
   SkinPoses poses;
   Array<float> kept;
-  if (!bones.is_none()) {
-    kept = bones.cast<Array<float>>();
-    poses.bones = poses_of(asset, kept);
-    poses.count = poses.bones.count;
-    poses.morph_weights = optional_rows(morph_weights, poses.count, asset.info().morph_count, "morph_weights");
+};
+
+// (bones, vertices, morph_weights), each an array or None.
+GivenPoses skin_poses_of(const LoadedAsset& asset, const py::tuple& given) {
+  GivenPoses out;
+  if (!given[0].is_none()) {
+    out.kept = given[0].cast<Array<float>>();
+    out.poses.bones = poses_of(asset, out.kept);
+    out.poses.count = out.poses.bones.count;
+    out.poses.morph_weights = optional_rows(given[2], out.poses.count, asset.info().morph_count, "morph_weights");
   } else {
-    kept = vertices.cast<Array<float>>();
-    poses.count = kept.ndim() == 3 ? static_cast<std::size_t>(kept.shape(0)) : 0;
-    poses.vertices = checked(kept, {poses.count, asset.info().vertex_count, 3}, "vertices");
+    out.kept = given[1].cast<Array<float>>();
+    out.poses.count = out.kept.ndim() == 3 ? static_cast<std::size_t>(out.kept.shape(0)) : 0;
+    out.poses.vertices = checked(out.kept, {out.poses.count, asset.info().vertex_count, 3}, "vertices");
   }
-  FoundContacts found;
+  return out;
+}
+
+Rule rule_of(const std::vector<float>& figures) {
+  Rule rule = sc_default_rule();
+  float* const own = &rule.touch_depth;
+  require(figures.size() == (sizeof(Rule) - sizeof rule.version) / sizeof(float), "rule");
+  std::copy(figures.begin(), figures.end(), own);
+  return rule;
+}
+
+// A query's words of bits: None, or at least so many.
+const std::uint64_t* words_of(const py::object& given, std::size_t bits) {
+  if (given.is_none()) {
+    return nullptr;
+  }
+  const auto words = given.cast<Array<std::uint64_t>>();
+  require(static_cast<std::size_t>(words.size()) >= (bits + 63) / 64, "bits");
+  return checked(words, {static_cast<std::size_t>(words.size())}, "bits");
+}
+
+// `query` has the numbers and bits of an sc_query; `other` and the poses beside it are None where they are not asked
+// for.
+py::tuple ask_all(const LoadedAsset& asset, int question, const py::tuple& poses, const py::dict& query,
+                  const LoadedAsset* other, const py::object& others, const py::object& before,
+                  const py::object& others_before, std::size_t threads) {
+  Asked asked;
+  asked.question = static_cast<Question>(question);
+  asked.other = other;
+  const GivenPoses given = skin_poses_of(asset, poses);
+  GivenPoses more[3];
+  const auto take = [&](const LoadedAsset& of, const py::object& from, GivenPoses& kept) {
+    if (!from.is_none()) {
+      kept = skin_poses_of(of, from.cast<py::tuple>());
+      require(kept.poses.count == given.poses.count, "poses: another number");
+    }
+    return kept.poses;
+  };
+  asked.others = take(other == nullptr ? asset : *other, others, more[0]);
+  asked.before = take(asset, before, more[1]);
+  asked.others_before = take(other == nullptr ? asset : *other, others_before, more[2]);
+  const bool is_step = asked.question == Question::kSteps;
+  require((other != nullptr) == (asked.others.count > 0 || (other != nullptr && given.poses.count == 0)), "others");
+  require(!is_step || given.poses.count == asked.before.count, "before");
+  require(!is_step || other == nullptr || given.poses.count == asked.others_before.count, "others_before");
+
+  Query& q = asked.query;
+  const std::size_t parts = asset.info().part_count, of_other = (other == nullptr ? asset : *other).info().part_count;
+  q.scope = static_cast<Scope>(query["scope"].cast<int>());
+  q.detail = static_cast<Detail>(query["detail"].cast<int>());
+  q.classes = query["classes"].cast<std::uint32_t>();
+  q.limit = query["limit"].cast<std::size_t>();
+  q.tolerance = query["tolerance"].cast<float>();
+  q.ignored_parts = words_of(query["ignored_parts"], parts);
+  q.ignored_parts_of_other = words_of(query["ignored_parts_of_other"], of_other);
+  q.part_pairs = words_of(query["part_pairs"], parts * of_other);
+  std::vector<std::uint64_t> ignored;
+  Filter filter;
+  if (!query["ignored_spheres"].is_none()) {
+    ignored.resize(sc_pair_words(&asset.asset()));
+    filter = {ignored.data(), ignored.size()};
+    python::require(sc_reset_filter(&asset.asset(), &filter));
+    for (const auto& [a, b] : query["ignored_spheres"].cast<std::vector<std::pair<std::uint32_t, std::uint32_t>>>()) {
+      python::require(sc_ignore_pair(&asset.asset(), &filter, a, b, 1));
+    }
+    q.filter = &filter;
+  }
+  Rule rule;
+  if (!query["rule"].is_none()) {
+    rule = rule_of(query["rule"].cast<std::vector<float>>());
+    q.rule = &rule;
+  }
+  const auto up = query["up"].cast<std::array<float, 3>>();
+  asked.ground.up = {up[0], up[1], up[2]};
+  asked.ground.height = query["height"].cast<float>();
+  Answers found;
   {
     const py::gil_scoped_release release;
-    found = find_contacts(asset, poses, {static_cast<Scope>(scope), quick, lists_triangles, threads});
+    found = ask(asset, given.poses, asked, threads);
   }
-  return py::make_tuple(bytes_of(std::move(found.penetrations.entries)), bytes_of(std::move(found.penetrations.first)),
-                        bytes_of(std::move(found.triangles.entries)), bytes_of(std::move(found.triangles.first)));
+  py::list lists;
+  for (Runs& runs : found.lists) {
+    lists.append(py::make_tuple(bytes_of(std::move(runs.bytes)), bytes_of(std::move(runs.first))));
+  }
+  return py::make_tuple(lists, bytes_of(std::move(found.totals)));
 }
 
 template <typename T>
@@ -189,16 +273,27 @@ py::array_t<T> skin_points(const LoadedAsset& asset, const Array<T>& bones, cons
   return out;
 }
 
-// Throws with the message of sc_check_rest_pose() for the first pose that is no rest pose.
+// Throws with the message of sc_check_rest() for the first pose that is no rest pose.
 void check_rest(const LoadedAsset& asset, const Array<float>& bones) {
   const Poses<float> poses = poses_of(asset, bones);
   for (std::size_t i = 0; i < poses.count; ++i) {
-    const sc_pose pose = pose_of(asset, poses, i);
+    const Pose pose = pose_of(asset, poses, i);
     char message[512] = "";
-    if (sc_check_rest_pose(&asset.asset(), &pose, message, sizeof message) != SC_OK) {
+    if (sc_check_rest(asset.model().handle(), &pose, message, sizeof message) != SC_OK) {
       throw std::invalid_argument(message);
     }
   }
+}
+
+// (part, region, sphere) of a triangle of the source; None: the asset leaves it out.
+py::object triangle(const LoadedAsset& asset, std::uint32_t number) {
+  const TriangleOwner owner = asset.model().triangle(number);
+  return owner.part == SC_NO_PART ? py::object(py::none()) : py::make_tuple(owner.part, owner.region, owner.sphere);
+}
+
+std::vector<float> default_rule() {
+  const Rule rule = sc_default_rule();
+  return {&rule.touch_depth, &rule.touch_depth + (sizeof(Rule) - sizeof rule.version) / sizeof(float)};
 }
 
 // `penetrations`: bytes; `first`: where each pose's start, and their end.
@@ -304,8 +399,11 @@ PYBIND11_MODULE(_native, module) {
   module.attr("TRIANGLE_BYTES") = sizeof(TriangleContact);
   module.attr("VERSION") = SC_VERSION;
   set_main_thread(py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>());
+  module.attr("STEP_BYTES") = sizeof(StepContact);
+  module.attr("CONTACT_BYTES") = sizeof(PartContact);
   module.def("class_name", &class_name);
-  py::class_<LoadedAsset> asset(module, "Asset");
+  module.def("default_rule", &default_rule);
+  py::class_<LoadedAsset> asset(module, "Model");
   asset.def(py::init<const std::string&>())
       .def("bytes", [](const LoadedAsset& self) { return py::bytes(self.bytes()); })
       .def("info", &info)
@@ -313,7 +411,8 @@ PYBIND11_MODULE(_native, module) {
       .def("pair_scales", &pair_scales)
       .def("spheres", &spheres)
       .def("pairs", &pairs)
-      .def("contacts", &contacts)
+      .def("ask", &ask_all)
+      .def("triangle", &triangle)
       .def("depth_gradients", &depth_gradients);
   define_for<float>(asset);
   define_for<double>(asset);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "loaded_asset.h"
+#include "pairs/detect_job.h"
 
 namespace spherechain::python {
 

@@ -10,10 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._contacts import FAULTS, KINDS, PENETRATION, TRIANGLE_PAIR, Contacts
+from ._answers import (CLASSES, FAULTS, PART_CONTACT, PENETRATION, SPHERE_PAIR, STEP, TRIANGLE_PAIR, Contacts, Penetrations,
+                       Rule, Steps)
 
 _RADII = {"detect": 0, "fit": 1}
 _SCOPES = {"apart": 0, "neighbours": 1, "all": 2}
+_DETAILS = {"quick": 0, "full": 1}
+_PENETRATIONS, _CONTACTS, _STEPS, _GROUND, _BOUNDS = range(5)  # questions of the native module
 _SIDES = ("", "left", "right")
 
 
@@ -29,20 +32,46 @@ class Part(NamedTuple):
 
     name: str  #: "right hand"
     side: str  #: "left", "right" or ""
-    bone: Optional[int]  #: the bone that it follows, into Asset.bones
-    parent: Optional[int]  #: the part that it hangs on, into Asset.parts
+    bone: Optional[int]  #: the bone that it follows, into Model.bones
+    parent: Optional[int]  #: the part that it hangs on, into Model.parts
 
 
-class Asset:
+class Query(NamedTuple):
+    """The options of a question, keywords of Model's methods. The defaults ask what `play` and `check` ask."""
+
+    scope: str = "apart"  #: "all": with neighbours on the body, the folds of elbows and knees; "neighbours": these alone
+    detail: str = "quick"  #: "full": penetrations that are no faults in full, too; contacts of spheres and triangles
+    classes: Sequence[str] = FAULTS  #: which penetrations are listed, of CLASSES
+    limit: int = 0  #: the worst so many; 0: all
+    rule: Optional[Rule] = None  #: the limits of classes; None: Rule()
+    ignored_spheres: Optional[Sequence[Tuple[int, int]]] = None  #: more pairs that do not meet, of one body
+    ignored_parts: Optional[Sequence[int]] = None  #: parts that meet nothing, of two bodies and the ground
+    ignored_parts_of_other: Optional[Sequence[int]] = None
+    part_pairs: Optional[Sequence[Tuple[int, int]]] = None  #: the pairs of parts that are asked about; None: all
+    tolerance: float = 0.0  #: of steps, a share of the height; 0: 0.0001
+
+
+class Posed(NamedTuple):
+    """Another body of a question: a model and its poses, as many as the question has."""
+
+    model: "Model"
+    bones: NDArray[np.float32]  #: (..., bones, 3, 4), in the same space as the other's
+    bones_before: Optional[NDArray[np.float32]] = None  #: of steps: where it comes from
+
+
+class Model:
     """A character that `bake` made.
 
     Its methods take one pose or a batch: arrays with any number of axes before those named. `bones` are skinning matrices,
-    the world matrix of each bone times its inverse bind matrix, in the order of Asset.bones: (..., bones, 3, 4), or
-    (..., bones, 4, 4), whose last rows only check_rest() reads. Lengths are in the pose's units: as in the character's
-    file, for glTF metres. Arrays that lie well in memory are not copied. Other threads of Python run in the meantime; `threads` is
-    for the batch, 0: as many as cores. Ctrl-C ends a batch after the poses that are being computed.
+    the world matrix of each bone times its inverse bind matrix, in the order of Model.bones: (..., bones, 3, 4), or
+    (..., bones, 4, 4), whose last rows only check_rest() reads. `vertices` in their place: float32 (..., vertices, 3), the
+    deformed vertices in the order of the source's file. `morph_weights`: float32 (..., morphs), with bones. Lengths are in
+    the pose's units: as in the character's file, for glTF metres. Arrays that lie well in memory are not copied. Other
+    threads of Python run in the meantime; `threads` is for the batch, 0: as many as cores. Ctrl-C ends a batch after the
+    poses that are being computed. Of a batch each answer is a list for its axis, lists of lists for several axes.
+    `query`: keywords of Query.
 
-    Any number of threads may use one asset. It can be pickled.
+    Any number of threads may use one model. It can be pickled.
     """
 
     def __init__(self, source: Union[str, "os.PathLike[str]", bytes]) -> None:
@@ -57,9 +86,9 @@ class Asset:
             with open(source, "rb") as file:
                 data = file.read()
         else:
-            raise TypeError(f"Asset takes a path or bytes, not {type(source).__name__}")
+            raise TypeError(f"Model takes a path or bytes, not {type(source).__name__}")
         try:
-            self._native = _native.Asset(data)
+            self._native = _native.Model(data)
         except ValueError as error:
             raise ValueError(f"{name}: {error}") from None
         info = self._native.info()
@@ -85,14 +114,14 @@ class Asset:
 
     def __setattr__(self, name: str, value: Any) -> None:
         if getattr(self, "_is_open", False):
-            raise AttributeError(f"{name} cannot be set: an asset does not change")
+            raise AttributeError(f"{name} cannot be set: a model does not change")
         super().__setattr__(name, value)
 
     def __reduce__(self):
-        return Asset, (self._native.bytes(),)
+        return Model, (self._native.bytes(),)
 
     def __repr__(self) -> str:
-        return (f"<Asset of {self.source_file}: {self.sphere_count} spheres, {len(self.bones)} bones, "
+        return (f"<Model of {self.source_file}: {self.sphere_count} spheres, {len(self.bones)} bones, "
                 f"{len(self.parts)} parts>")
 
     def check_rest(self, bones: NDArray[np.float32]) -> None:
@@ -109,6 +138,10 @@ class Asset:
             raise ValueError(f"bones: a last row is {row}, not [0 0 0 1]. Are the matrices transposed?")
         self._native.check_rest(poses)
 
+    def triangle(self, number: int) -> Optional[Tuple[int, int, int]]:
+        """Body part, region and sphere of a triangle of the source; None: the skin leaves it out, as degenerate ones are."""
+        return self._native.triangle(number)
+
     def spheres(self, bones: NDArray[np.float32], *, radius: str = "detect", threads: int = 1) -> NDArray[np.float32]:
         """Where the spheres are: x, y, z and radius of each.
 
@@ -118,8 +151,8 @@ class Asset:
         out = self._native.spheres(poses, _choice("radius", radius, _RADII), _count("threads", threads))
         return out.reshape(*batch, self.sphere_count, 4)
 
-    def pairs(self, bones: NDArray[np.float32], *, radius: str = "detect", threads: int = 1) -> Any:
-        """Which spheres touch. A cheap alarm: the skin's answer is contacts().
+    def sphere_pairs(self, bones: NDArray[np.float32], *, radius: str = "detect", threads: int = 1) -> Any:
+        """Which spheres touch. A cheap alarm: the skin's answers are contacts() and penetrations().
 
         bones: float32 (..., bones, 3, 4). Returns uint32 (pairs, 2), each row a < b, sorted; of a batch a list of these for
         its axis, lists of lists for several axes.
@@ -128,25 +161,44 @@ class Asset:
         entries, first = self._native.pairs(poses, _choice("radius", radius, _RADII), _count("threads", threads))
         return _nested(_runs(entries.view(np.uint32).reshape(-1, 2), first), batch)
 
-    def contacts(self, bones: Optional[NDArray[np.float32]] = None, *, vertices: Optional[NDArray[np.float32]] = None,
-                 morph_weights: Optional[NDArray[np.float32]] = None, scope: str = "apart", quick: bool = False,
-                 triangles: bool = False, threads: int = 1) -> Any:
-        """Where the skin intersects itself, exactly: body parts, depth, way out and kind.
+    def penetrations(self, bones: Any = None, *, vertices: Any = None, morph_weights: Any = None,
+                     other: Optional[Posed] = None, threads: int = 1, **query: Any) -> Any:
+        """Which body parts penetrate each other, how deep and which way out; by default the faults that `play` finds.
 
-        bones: float32 (..., bones, 3, 4); or vertices: float32 (..., vertices, 3), the deformed vertices in the order of the
-        source's file. morph_weights: float32 (..., morphs), with bones. scope: "apart", or with neighbours on the body
-        "all", or those alone "neighbours". quick: measure likely faults alone in full, all else along one direction; no
-        volumes; for every frame of a game. triangles: list the pairs of triangles, too.
-
-        Returns Contacts; of a batch a list of these for its axis, lists of lists for several axes.
+        other: another body; then `part` is of this one. Returns Penetrations, the worst first.
         """
-        arguments, batch = self._contact_arguments(bones, vertices, morph_weights, scope, quick)
-        entries, first, pairs, pairs_first = self._native.contacts(*arguments, bool(triangles), _count("threads", threads))
-        runs = _runs(entries.view(PENETRATION), first)
-        pair_runs = _runs(pairs.view(TRIANGLE_PAIR), pairs_first) if triangles else [None] * len(runs)
-        scale = self.metres_per_unit * 1000
-        return _nested([Contacts(run, pair_run, self._part_names, scale) for run, pair_run in zip(runs, pair_runs)],
-                       batch)
+        return self._penetrations(_PENETRATIONS, bones, vertices, morph_weights, other, threads, query)
+
+    def below(self, up: Sequence[float], height: float, bones: Any = None, *, vertices: Any = None,
+              morph_weights: Any = None, threads: int = 1, **query: Any) -> Any:
+        """The body parts below the ground: the plane up . p = height, `up` of unit length. Returns Penetrations."""
+        ground = {"up": [float(x) for x in up], "height": float(height)}
+        return self._penetrations(_GROUND, bones, vertices, morph_weights, None, threads, query, ground)
+
+    def contacts(self, bones: Any = None, *, vertices: Any = None, morph_weights: Any = None,
+                 other: Optional[Posed] = None, threads: int = 1, **query: Any) -> Any:
+        """Where skins intersect, exactly. Returns Contacts: of body parts; with detail="full" of spheres and triangles."""
+        lists, _, batch = self._ask(_CONTACTS, bones, vertices, morph_weights, other, threads, query)
+        is_full = Query(**query).detail == "full"
+        kinds = (PART_CONTACT, SPHERE_PAIR if is_full else None, TRIANGLE_PAIR if is_full else None)
+        names = self._part_names, other.model._part_names if other else self._part_names
+        runs = [[None] * len(lists[0]) if kind is None else [run.view(kind) for run in of] for of, kind in zip(lists, kinds)]
+        return _nested([Contacts(*of_pose, *names) for of_pose in zip(*runs)], batch)
+
+    def steps(self, bones_before: Any, bones: Any, *, other: Optional[Posed] = None, threads: int = 1, **query: Any) -> Any:
+        """Which body parts touch on the way from one pose to the next, each number of the matrices blended on its own.
+
+        Returns Steps, sorted by parts. Times are shares of the step.
+        """
+        before, batch = self._poses(bones_before)
+        lists, _, batch = self._ask(_STEPS, bones, None, None, other, threads, query, before=(before, None, None))
+        names = self._part_names, other.model._part_names if other else self._part_names
+        return _nested([Steps(run.view(STEP), *names) for run in lists[0]], batch)
+
+    def bounds(self, bones: Any = None, *, vertices: Any = None, morph_weights: Any = None, threads: int = 1) -> np.ndarray:
+        """A box that holds all of the skin for certain: float32 (..., 2, 3), its low corner and its high one."""
+        lists, _, batch = self._ask(_BOUNDS, bones, vertices, morph_weights, None, threads, {})
+        return np.array([run.view(np.float32) for run in lists[0]], np.float32).reshape(*batch, 2, 3)
 
     def sphere_energy(self, bones: np.ndarray, *, radius: str = "detect", threads: int = 1) -> Tuple[Any, np.ndarray]:
         """How much spheres overlap, and the gradient by the bones' matrices: a smooth loss.
@@ -193,36 +245,33 @@ class Asset:
                                        _choice("radius", radius, _RADII), _count("threads", threads))
         return out.reshape(*batch, len(self.bones), 3, 4)
 
-    def skin_energy(self, bones: NDArray[np.float32], *, kinds: Sequence[str] = FAULTS,
-                    morph_weights: Optional[NDArray[np.float32]] = None, scope: str = "apart", quick: bool = False,
-                    threads: int = 1) -> Tuple[Any, NDArray[np.float32]]:
-        """The sum of squared depths of the skin's contacts of these kinds, and its gradient by the bones' matrices.
+    def skin_energy(self, bones: NDArray[np.float32], *, morph_weights: Optional[NDArray[np.float32]] = None,
+                    threads: int = 1, **query: Any) -> Tuple[Any, NDArray[np.float32]]:
+        """The sum of squared depths of penetrations, by default of faults, and its gradient by the bones' matrices.
 
         bones: float32 (..., bones, 3, 4). Returns float32 (...), in squared units of the pose, and float32
         (..., bones, 3, 4). The gradient is that of the distance of the two deepest points, fixed on the skin. When other
         points become the deepest, it jumps: use sphere_energy() first where parts are far inside each other.
         """
-        arguments, batch = self._contact_arguments(bones, None, morph_weights, scope, quick)
-        wanted = [_choice("kinds", kind, {name: number for number, name in enumerate(KINDS)}) for kind in kinds]
-        entries, first, _, _ = self._native.contacts(*arguments, False, _count("threads", threads))
-        runs = entries.view(PENETRATION)
-        depths = np.where(np.isin(runs["kind"], wanted), runs["depth"], np.float32(0))
-        places = first.view(np.uint64)
-        pose_of_run = np.repeat(np.arange(len(places) - 1), np.diff(places).astype(np.int64))
-        energy = np.bincount(pose_of_run, np.square(depths, dtype=np.float64), len(places) - 1).astype(np.float32)
-        gradient = self._native.depth_gradients(entries, places, np.asarray(2 * depths, np.float32), arguments[2])
+        lists, _, batch = self._ask(_PENETRATIONS, bones, None, morph_weights, None, threads, query)
+        runs = [run.view(PENETRATION) for run in lists[0]]
+        energy = np.array([np.square(run["depth"], dtype=np.float64).sum() for run in runs], np.float32)
+        entries = np.concatenate(runs) if runs else np.zeros(0, PENETRATION)
+        first = np.cumsum([0] + [len(run) for run in runs], dtype=np.uint64)
+        gradient = self._native.depth_gradients(entries.view(np.uint8), first, np.asarray(2 * entries["depth"], np.float32),
+                                                self._morphs(morph_weights, batch))
         return energy.reshape(batch)[()], gradient.reshape(*batch, len(self.bones), 3, 4)
 
-    def depth_gradients(self, contacts: Contacts,
+    def depth_gradients(self, found: Penetrations,
                         morph_weights: Optional[NDArray[np.float32]] = None) -> NDArray[np.float32]:
-        """The gradient of each contact's depth by the bones' matrices, with its deepest points fixed on the skin.
+        """The gradient of each penetration's depth by the bones' matrices, with its deepest points fixed on the skin.
 
-        contacts: of one pose, from contacts(). morph_weights: float32 (morphs,), those of that pose. Returns float32
-        (contacts, bones, 3, 4).
+        found: of one pose, from penetrations() of this body alone. morph_weights: float32 (morphs,), those of that pose.
+        Returns float32 (penetrations, bones, 3, 4).
         """
-        count = len(contacts)
+        count = len(found)
         morphs = self._morphs(morph_weights, ())
-        entries = np.ascontiguousarray(contacts.array).view(np.uint8)
+        entries = np.ascontiguousarray(found.array).view(np.uint8)
         return self._native.depth_gradients(entries, np.arange(count + 1, dtype=np.uint64), np.ones(count, np.float32),
                                             None if morphs is None else np.repeat(morphs, count, 0))
 
@@ -244,8 +293,17 @@ class Asset:
                                   self._morphs(morph_weights, batch), _count("threads", threads))
         return out.reshape(*batch, len(numbers), 3)
 
-    def _contact_arguments(self, bones: Any, vertices: Any, morph_weights: Any, scope: str,
-                           quick: bool) -> Tuple[Tuple[Any, Any, Any, int, bool], Tuple[int, ...]]:
+    def _penetrations(self, question: int, bones: Any, vertices: Any, morph_weights: Any, other: Optional[Posed],
+                      threads: int, query: dict, ground: Optional[dict] = None) -> Any:
+        lists, totals, batch = self._ask(question, bones, vertices, morph_weights, other, threads, query, ground)
+        names = self._part_names, other.model._part_names if other else self._part_names
+        scale = self.metres_per_unit * 1000
+        return _nested([Penetrations(run.view(PENETRATION), total, *names, scale) for run, total in zip(lists[0], totals)],
+                       batch)
+
+    def _ask(self, question: int, bones: Any, vertices: Any, morph_weights: Any, other: Optional[Posed], threads: int,
+             query: dict, ground: Optional[dict] = None, before: Any = None) -> Tuple[list, list, Tuple[int, ...]]:
+        """The lists of each pose as bytes, how many entries there are in all, and the batch."""
         if (bones is None) == (vertices is None):
             raise TypeError("pass bones or vertices, one of the two")
         if bones is not None:
@@ -256,8 +314,43 @@ class Asset:
             array = self._array("vertices", vertices, _SINGLE, (self.vertex_count, 3))
             poses, batch = np.ascontiguousarray(array.reshape(-1, self.vertex_count, 3)), array.shape[:-2]
         morphs = self._morphs(morph_weights, batch)
-        place = (None, poses) if bones is None else (poses, None)
-        return (place[0], place[1], morphs, _choice("scope", scope, _SCOPES), bool(quick)), batch
+        place = (None, poses, None) if bones is None else (poses, None, morphs)
+        others = others_before = None
+        if other is not None:
+            others = (other.model._poses(other.bones)[0], None, None)
+            if other.bones_before is not None:
+                others_before = (other.model._poses(other.bones_before)[0], None, None)
+            for of in (others, others_before) if question == _STEPS else (others,):
+                if of is None or len(of[0]) != len(poses):
+                    raise ValueError(f"other has not {len(poses)} poses" + (", and as many before" if question == _STEPS else ""))
+        if before is not None and len(before[0]) != len(poses):
+            raise ValueError(f"bones_before has {len(before[0])} poses, bones {len(poses)}")
+        lists, totals = self._native.ask(question, place, self._query(query, other, ground),
+                                         None if other is None else other.model._native, others, before, others_before,
+                                         _count("threads", threads))
+        return [_runs(*run) for run in lists], totals.view(np.uint64).tolist(), batch
+
+    def _query(self, given: dict, other: Optional[Posed], ground: Optional[dict]) -> dict:
+        unknown = set(given) - set(Query._fields)
+        if unknown:
+            raise TypeError(f"{min(unknown)} is no option: {', '.join(Query._fields)}")
+        query = Query(**given)
+        if query.limit < 0:
+            raise ValueError(f"limit is {query.limit}: pass 0, all, or more")
+        parts, others = len(self.parts), len((other.model if other else self).parts)
+        if not query.classes:
+            raise ValueError(f"classes is empty: pass some of {', '.join(CLASSES)}")
+        classes = [_choice("classes", name, {known: k for k, known in enumerate(CLASSES)}) for name in query.classes]
+        pairs = query.part_pairs
+        return {
+            "scope": _choice("scope", query.scope, _SCOPES), "detail": _choice("detail", query.detail, _DETAILS),
+            "classes": sum(1 << k for k in set(classes)), "limit": int(query.limit),
+            "tolerance": float(query.tolerance), "ignored_spheres": query.ignored_spheres,
+            "ignored_parts": _bits("ignored_parts", query.ignored_parts, parts),
+            "ignored_parts_of_other": _bits("ignored_parts_of_other", query.ignored_parts_of_other, others),
+            "part_pairs": _bits("part_pairs", pairs and [_place(pair, parts, others) for pair in pairs], parts * others),
+            "rule": None if query.rule is None else list(query.rule), **(ground or {"up": [0, 0, 0], "height": 0}),
+        }
 
     def _poses(self, bones: Any, types: Any = None) -> Tuple[np.ndarray, Tuple[int, ...]]:
         count = len(self.bones)
@@ -309,6 +402,24 @@ def _choice(name: str, value: Any, numbers: dict) -> int:
     if not isinstance(value, str) or value not in numbers:
         raise ValueError(f"{name} is {value!r}: pass one of {', '.join(numbers)}")
     return numbers[value]
+
+
+def _place(pair: Sequence[int], parts: int, others: int) -> int:
+    a, b = pair
+    if not (0 <= a < parts and 0 <= b < others):
+        raise ValueError(f"part_pairs has ({a}, {b}): there are {parts} parts and {others}")
+    return a * others + b
+
+
+def _bits(name: str, numbers: Optional[Sequence[int]], count: int) -> Optional[NDArray[np.uint64]]:
+    if numbers is None:
+        return None
+    out = np.zeros(count // 64 + 1, np.uint64)
+    for number in numbers:
+        if not 0 <= number < count:
+            raise ValueError(f"{name} has {number}: pass numbers below {count}")
+        out[number // 64] |= np.uint64(1 << number % 64)
+    return out
 
 
 def _count(name: str, value: Any) -> int:
