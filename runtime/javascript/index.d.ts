@@ -2,258 +2,272 @@
 // spherechain: where a skinned character penetrates itself. The C++ runtime as WebAssembly.
 //
 //   const spherechain = await load();
-//   const asset = spherechain.open(bytes);             // a baked character, .sphc
-//   const character = asset.createCharacter(joints);   // joints: your skeleton's; allocates here
-//   character.setPalette(palette);                     // each frame: what your skinning shader gets
-//   for (const found of character.penetrations()) ...  // part names, depth, direction
+//   const model = spherechain.createModel(bytes, joints);  // a baked character, .sphc; your skeleton's joints
+//   const body = model.createBody();                       // all of its memory
+//   body.setPose(palette);                                 // each frame: what your skinning shader gets
+//   for (const found of body.penetrations()) ...           // part, depth, direction: the faults, the worst first
 //
-// Lengths are in the source file's units; multiply by `metresPerUnit` for metres. Positions and directions are in the
-// space of the palette: give world matrices and results are in world space.
+// Lengths are in the source file's units. Positions and directions are in the space of the palette: give world matrices, and
+// results are in world space. Numbers of parts, bones and joints are -1 where there is none.
 //
-// Views and lists. Methods of a Character return typed arrays that look into WebAssembly's memory, and arrays of objects
-// that it owns. Both are overwritten by the next call of the same method, whatever the pose, and nothing is allocated
-// for them in a frame. A typed array becomes empty (length 0) when the memory grows: when an asset is opened, a
-// character is made, or a frame has more contacts than any frame before. After dispose() it shows whatever comes to lie
-// there. So take views and lists anew each frame, and copy what you keep, and what a worker posts: `array.slice()`,
-// `structuredClone(penetrations)`. A spread (`{...penetration}`) is no copy: its arrays would still be filled again.
+// Views and lists. Methods of a Body return typed arrays that look into WebAssembly's memory, and objects that the body fills again.
+// Both are overwritten by the next call of the same method, and a view by the next pose or question. In a frame nothing is allocated
+// in WebAssembly. A view becomes empty (length 0) when the memory grows: when a model or body is made, or `previous` or ignored parts
+// are first given. After dispose() it shows other data. Copy what you keep, and what a worker posts: `array.slice()`,
+// `structuredClone(penetrations)`. A spread (`{...penetration}`) is no copy: its arrays are filled again.
 //
-// Errors are thrown as SpherechainError with the runtime's sentence. Whatever the bytes of an asset and the numbers of a
-// palette are, nothing worse happens.
+// What is refused is thrown as a SpherechainError with a sentence. After an error the module still works.
 
 /** Compiles the module: once a page, some tens of milliseconds. Every call gives the same object. Needs WebAssembly with SIMD:
  * Chromium 93, Firefox 92, Safari 16.4, Node 18, or newer. */
 export function load(): Promise<Spherechain>;
 
-export interface Spherechain {
-  /** Of the library: "0.1.0". */
-  readonly version: string;
-  /** Copies the bytes of a .sphc file and opens them. Throws if they are no asset, cut short, structurally damaged, or of
-   * another format version ("bake it again"). There is no checksum: a changed number may go unseen. */
-  open(bytes: Uint8Array | ArrayBuffer): Asset;
-}
-
-/** What was refused, and why, in its message. */
 export class SpherechainError extends Error {}
 
-/** The character's own left or right; null: neither. */
-export type Side = 'left' | 'right' | null;
-
-/** A bone that moves the skin: a joint of the source's skeleton, or of the automatic rig. */
-export interface Bone {
-  /** The joint's, as the source file has it; "" where the file gives none. Where no bone moves some vertices, a last bone
-   * stands for them. Its name is "" too, and it needs no joint. */
-  readonly name: string;
-  /** From the rest pose to the bone's space: 16 floats by columns, as in glTF and three.js. */
-  readonly inverseBind: Float32Array;
-}
-
-/** A body part as people call it: "right hand". Every triangle belongs to one. */
-export interface Part {
-  readonly name: string;
-  readonly side: Side;
-  /** The bone that it follows; -1 where no bone moves it. */
-  readonly bone: number;
-  /** The part that it hangs on; -1: none. */
-  readonly parent: number;
-}
-
-/** A sphere in the rest pose. */
-export interface RestSphere {
-  readonly center: readonly [number, number, number];
-  /** The fit radius, and the detect radius, at which spheres are tested. */
-  readonly radius: number;
-  readonly detectRadius: number;
-  /** Of a torso sphere: the half that it stands for. */
-  readonly side: Side;
-  /** Index into `regions`. */
-  readonly region: number;
-  /** Of a torso sphere: its height, from the bottom up; else -1. */
-  readonly level: number;
-}
-
-/** A baked character. Any number of Characters may share it. */
-export interface Asset {
-  readonly bones: readonly Bone[];
-  readonly parts: readonly Part[];
-  readonly spheres: readonly RestSphere[];
-  /** Names: what chains run along: "left arm", "torso". */
-  readonly regions: readonly string[];
-  readonly morphs: readonly string[];
-  /** The character's own axes at rest; unit vectors, left x up = forward. */
-  readonly origin: readonly [number, number, number];
-  readonly left: readonly [number, number, number];
-  readonly up: readonly [number, number, number];
-  readonly forward: readonly [number, number, number];
-  /** In the source's units. */
-  readonly height: number;
-  readonly metresPerUnit: number;
-  /** Of the source. Character.vertices() may be fewer. */
-  readonly vertexCount: number;
-  readonly triangleCount: number;
-  readonly sourceFile: string;
-  /** Of the skin that is tested, three indices into Character.vertices() for each triangle of the source, in its order: an
-   * index buffer. A triangle that the asset leaves out has three times 0. Empty where the asset has no triangles. */
-  readonly triangles: Uint32Array;
-
-  /** Working memory for one character at a time. With `joints`, palettes come in the order of these; each bone of the
-   * asset must be there by name, as the source file has it. Give inverse bind matrices (16 floats by columns, or 12 by
-   * rows; for all joints or for none) where you have them: another rest pose, unit or axis convention is then refused.
-   * Without `joints`, palettes come in the order of `bones`. */
-  createCharacter(joints?: readonly Joint[]): Character;
-
-  /** Frees the memory, of its characters too. What is not disposed of stays until the page goes. */
-  dispose(): void;
+export interface Spherechain {
+  /** The library's: "0.1.0". */
+  readonly version: string;
+  /** All classes, for `Query.classes`. */
+  readonly classes: readonly PenetrationClass[];
+  readonly defaultRule: Readonly<Rule>;
+  /** Copies the bytes of a .sphc file and opens them. It throws if they are no asset, cut short, damaged, or of another format version
+   * ("bake it again"). There is no checksum: a changed number may go unseen.
+   * With `joints`, palettes come in their order. Each bone of the asset must be there by name. Give inverse bind matrices (for all
+   * joints or for none) where you have them: another rest pose, unit or axis convention is then refused. Without `joints`, palettes
+   * come in the order of `Model.bones`. */
+  createModel(bytes: Uint8Array | ArrayBuffer, joints?: readonly Joint[]): Model;
+  /** The class of measurements: those that were found quickly by the rule that they were found with, full ones by any. */
+  classify(measures: Measures, rule?: Partial<Rule>): PenetrationClass;
 }
 
 export interface Joint {
   /** The source file's. three.js changes some names: give `bone.userData.name ?? bone.name`. */
   name: string;
-  /** three.js: `skeleton.boneInverses[i].elements`. */
+  /** 16 floats by columns, or 12 by rows. three.js: `skeleton.boneInverses[i].elements`. */
   inverseBind?: ArrayLike<number>;
 }
 
-/** 'detect' (the larger: spheres are tested at it) or 'fit' (the paper's). */
-export type Radius = 'detect' | 'fit';
+/** The character's own left or right; null: neither. */
+export type Side = 'left' | 'right' | null;
 
-/** 'apart': without the folds of neighbouring spheres at elbows and knees; 'neighbours': these alone; 'all'. */
-export type Scope = 'apart' | 'neighbours' | 'all';
+/** A baked character and your joints. It never changes. Any number of bodies share it. */
+export interface Model {
+  /** A joint of the source's skeleton, or of the automatic rig. The name is "" where the file gives none; where no bone moves some
+   * vertices, a last bone of that name stands for them, and needs no joint. `inverseBind`: 16 floats by columns. */
+  readonly bones: readonly { readonly name: string; readonly inverseBind: Float32Array }[];
+  /** Body parts as people call them: "right hand". `bone`: that it follows; `joint`: yours that moves it; `parent`: the part that it hangs
+   * on. Of two parts the one with more `mobility` goes into the other. */
+  readonly parts: readonly {
+    readonly name: string; readonly side: Side; readonly bone: number; readonly joint: number; readonly parent: number; readonly mobility: number;
+  }[];
+  /** The spheres at rest, with the radii of the two `Radius`. A torso sphere has a side and a level, from the bottom up; others null and -1. */
+  readonly spheres: readonly {
+    readonly center: Float32Array; readonly radius: number; readonly detectRadius: number; readonly side: Side; readonly region: number;
+    readonly level: number;
+  }[];
+  /** Names: what chains run along: "left arm", "torso". */
+  readonly regions: readonly string[];
+  readonly morphs: readonly string[];
+  readonly boneCount: number;
+  readonly partCount: number;
+  readonly sphereCount: number;
+  readonly regionCount: number;
+  readonly morphCount: number;
+  /** Matrices of a palette. */
+  readonly jointCount: number;
+  /** Of the source. */
+  readonly vertexCount: number;
+  readonly triangleCount: number;
+  /** The character's own axes at rest; unit vectors, left x up = forward. */
+  readonly origin: Float32Array;
+  readonly left: Float32Array;
+  readonly up: Float32Array;
+  readonly forward: Float32Array;
+  readonly height: number;
+  readonly metresPerUnit: number;
+  readonly writer: string;
+  readonly settings: string;
+  readonly sourceFile: string;
+  readonly sourceSha256: string;
+  /** An index buffer for `Body.vertices()`: three indices for each triangle of the source; three times 0 where the skin leaves it out. */
+  readonly triangles: Uint32Array;
 
-/** What a person would call it; docs/concepts.md has the rules. 'penetration' and 'deep_fold' are faults. */
-export type Kind = 'rest' | 'shell' | 'touch' | 'fold' | 'deep_fold' | 'penetration';
-
-/** Two body parts whose skins intersect. */
-export interface PartContact {
-  /** Indices into Asset.parts, partA <= partB; equal where a part meets itself. */
-  partA: number;
-  partB: number;
-  trianglePairs: number;
-  /** A box around the triangles that intersect. */
-  low: Float32Array;
-  high: Float32Array;
+  /** Where a triangle of the source belongs; null where the skin leaves it out. */
+  triangle(number: number): { part: number; region: number; sphere: number } | null;
+  /** A length in the units of a pose that has the asset's scale. */
+  millimetres(length: number): number;
+  /** For the first run, with the palette of the bind pose: throws, and names a bone, where the matrices do not move all bones alike:
+   * wrong strides, missing inverse bind matrices, another rest pose. Stand the character off the origin and turned: where the model's
+   * matrix is the identity, a wrong layout does not show. Wrong orders of joints never show in this pose: give `joints`. */
+  checkRest(palette: Float32Array): void;
+  /** `largestOther`: of all models that the body will meet; none is larger than its own if it is left out. `findsSteps`: for steps(); it
+   * needs much memory. `maxTriangles`: room for pairs of triangles; half of the triangles, and at least 4,096, if left out.
+   * `maxPenetrations`: 128 if left out. */
+  createBody(options?: { largestOther?: Model; findsSteps?: boolean; maxTriangles?: number; maxPenetrations?: number }): Body;
+  createFilter(): Filter;
+  /** Frees the memory, of its bodies and filters too. What is not disposed of stays until the page goes. */
+  dispose(): void;
 }
 
-/** Pairs of triangles that intersect. */
-export interface TriangleContacts {
-  count: number;
-  /** A view; 12 words for each pair: triangleA, triangleB (the source's numbers, A < B), sphereA, sphereB, partA, partB, and
-   * six that `segments` shows. */
-  pairs: Uint32Array;
-  /** A view of the same memory as floats, 12 for each pair: at 6 to 8 and 9 to 11 the ends of the segment in which the two
-   * triangles cross. */
-  segments: Float32Array;
+/** Which pairs of spheres a question about one body leaves out: the asset's own at first. */
+export interface Filter {
+  /** `isIgnored` false reports the pair, also where the asset ignores it. */
+  ignorePair(a: number, b: number, isIgnored?: boolean): void;
+  /** Each pair of a sphere of one region with a sphere of the other; the same region twice: the pairs within it. */
+  ignoreRegions(region: number, other: number, isIgnored?: boolean): void;
+  dispose(): void;
 }
 
-/** A point on the skin. */
-export interface SkinPoint {
-  position: Float32Array;
-  /** The source's number. */
-  triangle: number;
-  /** Of the triangle's corners; their sum is 1. */
-  weights: Float32Array;
+/** A model in a pose. Answers are of the last pose. */
+export interface Body {
+  readonly model: Model;
+  /** The new pose; the old one becomes the pose before. `palette`: for each joint the skinning matrix, world matrix times inverse bind
+   * matrix: 16 floats each by columns (three.js: Skeleton.boneMatrices; glTF), or 12 each by rows; null with vertices alone. `place`
+   * moves it into the world, where other bodies are: scale, rotation (a quaternion, x, y, z, w), translation. `vertices`: the source's
+   * deformed ones, x, y, z. All is copied. Throws where a length is wrong, and where a number that moves the skin is not finite: then
+   * the body has no pose. */
+  setPose(palette: Float32Array | null, options?: {
+    morphWeights?: Float32Array; vertices?: Float32Array;
+    place?: { translation?: ArrayLike<number>; rotation?: ArrayLike<number>; scale?: ArrayLike<number> };
+  }): void;
+
+  /** Which body parts are inside each other, how deep, and which way out: by class, faults first, then the deepest first. */
+  penetrations(query?: Query): Results<Penetration>;
+  /** The same of two bodies in one space: `part` is of this one. */
+  penetrations(other: Body, query?: Query): Results<Penetration>;
+  /** Which parts are below a plane, whose points p have up . p = height: `other` is -1. `up`: of unit length; y if left out. */
+  below(ground: { up?: ArrayLike<number>; height?: number }, query?: Query): Results<Penetration>;
+  /** Which body parts' skins intersect, exactly; with detail 'full' which spheres and triangles, too. Sorted, each once. */
+  contacts(query?: Query): Contacts;
+  contacts(other: Body, query?: Query): Contacts;
+  /** Where the spheres are, and which overlap: a cheap alarm, with false ones. `spheres`: x, y, z, radius each; `pairs`: two indices each. */
+  spherePairs(query?: Query): { spheres: Float32Array; pairs: Uint32Array; total: number };
+  /** What touches on the way from the pose before to this one. Of a body that was made with `findsSteps`. */
+  steps(query?: Query): Results<StepContact>;
+  steps(other: Body, query?: Query): Results<StepContact>;
+  /** A box that holds all of the skin. */
+  bounds(): { low: Float32Array; high: Float32Array };
+  /** Where the skin is: a view, x, y, z each. The asset merges the source's duplicates at seams: `length / 3` vertices, in an order of their
+   * own, of which Model.triangles are. The first call allocates. */
+  vertices(): Float32Array;
+  /** Frees the memory. Every later call throws. */
+  dispose(): void;
 }
 
-/** Two body parts that intersect, and how deep. The kind follows from the measurements: `depth`, and those from `visible` on. */
+/** The options of a question. Without any it asks what `spherechain play` and `check` ask. */
+export interface Query {
+  /** 'apart', if left out: without the folds of neighbouring spheres at elbows and knees; 'neighbours': these alone, 40 times dearer. */
+  scope?: 'apart' | 'neighbours' | 'all';
+  /** 'full': penetrations that are no faults are measured in full, too. The faults are the same. Contacts list spheres and triangles. */
+  detail?: 'quick' | 'full';
+  filter?: Filter;
+  /** Of two bodies and the ground: parts that meet nothing: a hand that holds the other. */
+  ignoredParts?: readonly number[];
+  ignoredPartsOfOther?: readonly number[];
+  /** Of contacts and penetrations: the pairs of parts that are asked about; all if left out. */
+  partPairs?: readonly (readonly [number, number])[];
+  /** What is a fault. Limits that are left out are the default rule's. */
+  rule?: Partial<Rule>;
+  /** Which penetrations are listed; none, or left out: faults. */
+  classes?: readonly PenetrationClass[];
+  /** The worst so many penetrations; 0, or left out: as many as there is room for. */
+  limit?: number;
+  /** The answer of the frame before: directions of faults then stay steady. A list that was not overwritten yet, or a copy. */
+  previous?: readonly Penetration[];
+  /** Of steps, a share of the height; 0.0001 if left out. */
+  tolerance?: number;
+  /** Of spherePairs(): 'detect', if left out: the larger one; 'fit': the paper's. */
+  radius?: 'detect' | 'fit';
+}
+
+/** `total` is larger than `length` where there was no room, or the query has a limit. */
+export type Results<T> = T[] & { total: number };
+
+/** What a person would call it; docs/concepts.md has the rule. 'penetration' and 'deep_fold' are faults. */
+export type PenetrationClass = 'rest' | 'shell' | 'touch' | 'fold' | 'deep_fold' | 'penetration';
+
+/** Two body parts that intersect. */
 export interface Penetration {
-  /** Indices into Asset.parts: `part` goes into `other`. It is the more mobile of the two, a hand in a thigh; of two alike
-   * the smaller. Both are the same where a part meets itself. */
+  /** `part` goes into `other`: the more mobile of the two, a hand into a thigh; of two alike the smaller. Both are the same where a part
+   * meets itself. */
   part: number;
   other: number;
-  /** Index into Asset.bones of the bone that moves `part`; -1 where none does. */
-  bone: number;
-  kind: Kind;
-  /** > 0, in the palette's units: the shortest way out. `depth / metre` is in metres. */
-  depth: number;
-  /** Moved so far along `direction`, `part` no longer intersects `other`: `depth`, or up to a quarter more where the last
-   * call's direction is kept. */
-  distance: number;
-  /** x, y, z; unit length. It moves `part`. */
+  /** Your joint that moves `part`. */
+  joint: number;
+  kind: PenetrationClass;
+  /** Unit length. `part`, moved by distance * direction, no longer intersects `other`. */
   direction: Float32Array;
-  /** Of the line in which the parts cross. */
+  /** Measures.depth, or up to a quarter more where `previous` keeps the direction. */
+  distance: number;
+  /** Of the line in which the parts cross, and a box around it; of the ground: a box of the skin below it, and its centre. */
   centre: Float32Array;
-  /** A box around that line. */
   low: Float32Array;
   high: Float32Array;
   /** The points of `part` and `other` that part last: deepestOther - deepest = distance * direction. */
   deepest: SkinPoint;
   deepestOther: SkinPoint;
-  /** Of the one part inside the other, in cubed units. Null where the line in which the parts cross does not close, and if
-   * quick. */
+  measures: Measures;
+}
+
+/** A point on the skin, in a triangle of the source; the sum of the weights of its corners is 1. */
+export interface SkinPoint { position: Float32Array; triangle: number; weights: Float32Array }
+
+/** The measurements that the class follows from. Null: not known. */
+export interface Measures {
+  /** > 0: the way out. `depth / metre` is in metres, also where the palette scales the character. */
+  depth: number;
+  /** Of the one part inside the other, in cubed units. */
   volume: number | null;
   /** Of the line in which the parts cross. */
   contourLength: number;
-  /** 0 to 1: the share of that line that can be seen from outside; 1 where it was not looked at. */
+  /** Shares of that line: that can be seen from outside (1 where it was not looked at); that touches at rest. */
   visible: number;
-  /** 0 to 1: the share of that line that touches at rest. */
   touching: number;
   /** -1 to 1: 1 where the sides lie flat on each other. */
   facing: number;
-  /** Between the two spots at rest, a share of the height; Infinity where they are of two characters. */
+  /** Between the two spots at rest, a share of the height; Infinity of two bodies. */
   restDistance: number;
-  /** Of the thinner part, there; null where it is not known. */
+  /** Of the thinner part, there. */
   thickness: number | null;
-  /** depth / thickness * visible length / side of a square like the smaller part; null where it is not known, because the kind
-   * does not depend on it. */
+  /** depth / thickness * visible length / side of a square like the smaller part. */
   swallowed: number | null;
-  /** How long the character's height and a metre are in the palette's units: `depth / metre` is the depth in metres. */
+  /** The character's height, and a metre, in the palette's units. */
   height: number;
   metre: number;
-  /** How the two parts hang together: 'joined', one hangs on the other; 'siblings', both hang on the same third part; 'near',
-   * one hangs on a part that hangs on the other. */
+  /** How the parts hang together: 'joined', one on the other; 'siblings', both on a third; 'near', one on a part that hangs on the other. */
   relation: 'apart' | 'near' | 'siblings' | 'joined' | 'two_bodies';
   /** Whether the two spots are of one piece of skin. */
   isOnePiece: boolean;
 }
 
-/** One character in a pose. All answers are of the palette that was set last; they are worked out when asked for. */
-export interface Character {
-  readonly asset: Asset;
-  /** Joints, or bones, a palette has. */
-  readonly jointCount: number;
+/** The limits of a class, as sc_rule in rule.h explains them. */
+export type Rule = Record<'version' | 'touchDepth' | 'touchMetres' | 'touchMin' | 'touchMax' | 'touchTimes' | 'swallowed' | 'atRest' | 'hidden' |
+  'shell' | 'fold' | 'neighbours' | 'foldFacing' | 'deepFold', number>;
 
-  /** Takes a frame's palette: for each joint the skinning matrix, world matrix times inverse bind matrix. 16 floats each by
-   * columns (three.js: Skeleton.boneMatrices; glTF), or 12 each by rows. The values are copied. `morphWeights`: as many as
-   * Asset.morphs; none: nothing morphs. Throws where the length is neither, and where a number that moves the skin is not
-   * finite: then no palette is set. */
-  setPalette(palette: Float32Array, morphWeights?: Float32Array): void;
+export interface Contacts {
+  /** partA <= partB of one body; of two, partB is of the other one. Low and high: a box around the triangles that intersect. */
+  parts: Results<{ partA: number; partB: number; trianglePairs: number; low: Float32Array; high: Float32Array }>;
+  /** A view: two indices of spheres for each pair. */
+  spheres: Uint32Array;
+  sphereTotal: number;
+  /** A view; 12 words for each pair: triangleA, triangleB (the source's numbers), sphereA, sphereB, partA, partB, and six that
+   * `segments` shows. */
+  triangles: Uint32Array;
+  /** The same memory as floats, 12 for each pair: at 6 to 8 and 9 to 11 the ends of the segment in which the two triangles cross. */
+  segments: Float32Array;
+  triangleTotal: number;
+}
 
-  /** For the first run, while the character stands in its bind pose: throws, and names a bone, where the palette does not
-   * move all bones alike: wrong strides, missing inverse bind matrices, another rest pose. Stand the character off the
-   * origin and turned: where the model's matrix is the identity, a wrong layout does not show. Wrong orders of joints never
-   * show in this pose: give `joints` by name. */
-  checkRest(): void;
-
-  /** Where the spheres are: a view, 4 floats for each of Asset.spheres: x, y, z, radius. */
-  refit(radius?: Radius): Float32Array;
-
-  /** Which spheres touch: a view, two indices for each pair, sorted. Refits first. A cheap alarm with false ones; contacts()
-   * is exact. */
-  detect(radius?: Radius): Uint32Array;
-
-  /** The pairs of body parts whose skins intersect, exactly, sorted. Folds cost forty times as much as the rest. */
-  contacts(scope?: Scope): PartContact[];
-
-  /** Which triangles: after contacts() of this pose, whose answer it details; else it asks contacts('apart') first. */
-  triangleContacts(): TriangleContacts;
-
-  /** How deep, which way out, and what kind, for what contacts() found; asks contacts('apart') first where it was not
-   * asked. `quick` (the default, for games): one direction is tried, without volume and visibility; likely faults alone are
-   * measured in full. With false, all is measured in full, which takes longer, and a fault's direction stays from call to
-   * call while it is about as good as the shortest. Both find the same faults. */
-  penetrations(quick?: boolean): Penetration[];
-
-  /** The pairs of body parts where this skin intersects another character's: partA is of this one, partB of `other`; nothing
-   * is swapped or left out. Both need a palette, in one space. */
-  contactsWith(other: Character): PartContact[];
-
-  /** How deep, which way out, and what kind, for what contactsWith() finds: `part` is of this one, Penetration.other of `other`.
-   * Kinds are 'shell', 'touch' and 'penetration'; they compare with this asset's height and unit. `quick`: as of
-   * penetrations(). */
-  penetrationsWith(other: Character, quick?: boolean): Penetration[];
-
-  /** Where the skin's vertices are in this pose: a view, x, y, z each. They are numbered by the asset, which merges the source's
-   * duplicates at seams: their count is `length / 3`. Asset.triangles has their triangles. */
-  vertices(): Float32Array;
-
-  /** Frees the memory. Every later call throws. */
-  dispose(): void;
+/** Two body parts that touch in a step. Times are shares of the step: the first and the last at which they touch. */
+export interface StepContact {
+  partA: number;
+  partB: number;
+  atStart: boolean;
+  atEnd: boolean;
+  begin: number;
+  end: number;
+  /** The triangles that touch first, and where; -1 and zeros with atStart. */
+  triangleA: number;
+  triangleB: number;
+  at: Float32Array;
 }

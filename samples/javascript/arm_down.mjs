@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Turns an arm of the automatic rig about its shoulder. `palette`: 16 floats for each of the asset's bones, by columns.
-export function armDown(asset, palette, side, degrees) {
-  const bone = name => asset.bones.findIndex(other => other.name === name);
-  const m = asset.bones[bone(`${side}_shoulder`)].inverseBind;
+// Turns an arm of the automatic rig about its shoulder. `palette`: 16 floats for each of the model's bones, by columns.
+export function armDown(model, palette, side, degrees) {
+  const bone = name => model.bones.findIndex(other => other.name === name);
+  const m = model.bones[bone(`${side}_shoulder`)].inverseBind;
   const x = -(m[0] * m[12] + m[1] * m[13] + m[2] * m[14]);  // where the shoulder is
   const y = -(m[4] * m[12] + m[5] * m[13] + m[6] * m[14]);
   const angle = ((side === 'left' ? -1 : 1) * degrees * Math.PI) / 180, c = Math.cos(angle), s = Math.sin(angle);

@@ -23,7 +23,7 @@ void main() {
 }`;
 
 export class Painter {
-  constructor(canvas, asset) {
+  constructor(canvas, model) {
     const gl = canvas.getContext('webgl2');
     const program = gl.createProgram();
     for (const [type, source] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
@@ -38,7 +38,7 @@ export class Painter {
     gl.enable(gl.DEPTH_TEST);
     gl.clearColor(0.957, 0.953, 0.941, 1);
     this.view = gl.getUniformLocation(program, 'view');
-    this.corners = asset.triangles;
+    this.corners = model.triangles;
     this.positions = new Float32Array(3 * this.corners.length);
     this.marks = new Float32Array(this.corners.length);
     this.buffers = [['position', 3], ['mark', 1]].map(([name, size]) => {
@@ -49,17 +49,17 @@ export class Painter {
       return buffer;
     });
     this.gl = gl;
-    this.asset = asset;
+    this.model = model;
   }
 
   draw(vertices, contacts) {
-    const { gl, corners, positions, marks, asset } = this;
+    const { gl, corners, positions, marks, model } = this;
     corners.forEach((vertex, i) => {
       for (let axis = 0; axis < 3; ++axis) positions[3 * i + axis] = vertices[3 * vertex + axis];
     });
     marks.fill(0);
-    for (let i = 0; i < 12 * contacts.count; i += 12) {
-      for (const triangle of [contacts.pairs[i], contacts.pairs[i + 1]]) marks.fill(1, 3 * triangle, 3 * triangle + 3);
+    for (let i = 0; i < contacts.length; i += 12) {
+      for (const triangle of [contacts[i], contacts[i + 1]]) marks.fill(1, 3 * triangle, 3 * triangle + 3);
     }
     [positions, marks].forEach((data, i) => {
       gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[i]);
@@ -69,7 +69,7 @@ export class Painter {
     canvas.width = canvas.clientWidth * devicePixelRatio;
     canvas.height = canvas.clientHeight * devicePixelRatio;
     gl.viewport(0, 0, canvas.width, canvas.height);
-    const scale = 1.7 / asset.height;
+    const scale = 1.7 / model.height;
     this.middle ??= [0, 1].map(axis => middleOf(vertices, axis));
     gl.uniform4f(this.view, ...this.middle, (scale * canvas.height) / canvas.width, scale);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);

@@ -11,22 +11,20 @@ if (!palettesFile) {
 }
 try {
   const spherechain = await load();
-  const asset = spherechain.open(readFileSync(assetFile));
   const { joints, rest, frames } = readPalettes(new Uint8Array(readFileSync(palettesFile)).buffer);
-  const character = asset.createCharacter(joints);  // allocates here, not in a frame
-  character.setPalette(rest);
-  character.checkRest();
+  const model = spherechain.createModel(readFileSync(assetFile), joints);
+  model.checkRest(rest);
+  const body = model.createBody();  // allocates here, not in a frame
 
   frames.forEach((palette, frame) => {
-    character.setPalette(palette);  // what your skinning shader gets
-    for (const found of character.penetrations()) {
-      if (found.kind !== 'penetration') continue;  // folds at joints, touches ...
-      const out = Array.from(found.direction, x => x.toFixed(2)).join(', ');  // the way that the part must go
-      console.log(`frame ${frame}: ${asset.parts[found.part].name} in ${asset.parts[found.other].name}, ` +
-        `${(1000 * asset.metresPerUnit * found.depth).toFixed(0)} mm; out along (${out})`);
+    body.setPose(palette);  // what your skinning shader gets
+    for (const { part, other, joint, direction, distance, measures } of body.penetrations()) {  // faults alone, the worst first
+      const way = Array.from(direction, x => (distance * x).toFixed(3)).join(', ');  // moved so far, the part is free
+      console.log(`frame ${frame}: ${model.parts[part].name} in ${model.parts[other].name}, ` +
+        `${model.millimetres(measures.depth).toFixed(0)} mm; move ${joints[joint]?.name ?? 'nothing'} by (${way})`);
     }
   });
-  asset.dispose();
+  model.dispose();
 } catch (error) {
   console.error(`which_parts: error: ${error.message}`);
   process.exit(3);

@@ -6,7 +6,7 @@ import { readFileSync } from 'node:fs';
 import test from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { readPalettes } from '../../samples/javascript/palettes.mjs';
-import { frameHashes, pairHashes } from './frame_hashes.mjs';
+import { filterOf, frameHashes, pairHashes } from './frame_hashes.mjs';
 
 const [packageFolder, assetFile, palettesFile, nativeFile, pairFile] = process.argv.slice(2);
 const { load, SpherechainError } = await import(pathToFileURL(`${packageFolder}/index.js`));
@@ -24,184 +24,311 @@ test('the module is loaded once and knows its version', async () => {
   assert.equal(spherechain.version, JSON.parse(readFileSync(`${packageFolder}/package.json`)).version);
 });
 
-test('an asset says what it is', () => {
-  const asset = spherechain.open(bytes);
-  assert.ok(asset.vertexCount > 14000);
-  assert.equal(asset.triangleCount, 28796);
-  assert.equal(asset.triangles.length, 3 * asset.triangleCount);
-  assert.ok(asset.metresPerUnit > 0 && asset.height > 0 && asset.spheres.length > 40);
-  assert.ok(asset.up[1] > 0.99);
-  const hand = asset.parts.find(part => part.name === 'right hand');
+test('a model says what it is', () => {
+  const model = spherechain.createModel(bytes, joints);
+  assert.ok(model.vertexCount > 14000);
+  assert.equal(model.triangleCount, 28796);
+  assert.equal(model.triangles.length, 3 * model.triangleCount);
+  assert.equal(model.triangles, model.triangles);
+  assert.ok(model.metresPerUnit > 0 && model.height > 0 && model.sphereCount > 40);
+  assert.equal(model.millimetres(2), 2000 * model.metresPerUnit);
+  assert.ok(model.up[1] > 0.99);
+  assert.match(model.writer, /^spherechain \d/);
+  assert.match(model.sourceSha256, /^[0-9a-f]{64}$/);
+  const hand = model.parts.find(part => part.name === 'right hand');
   assert.equal(hand.side, 'right');
-  assert.equal(asset.parts[hand.parent].name, 'right forearm');
+  assert.equal(model.parts[hand.parent].name, 'right forearm');
+  assert.ok(hand.mobility > model.parts[hand.parent].mobility);
+  assert.equal(joints[hand.joint].name, model.bones[hand.bone].name);
+  const head = model.parts.findIndex(part => part.name === 'head');
+  const triangle = Array.from({ length: model.triangleCount }, (_, i) => model.triangle(i)).find(found => found?.part === head);
+  assert.equal(model.spheres[triangle.sphere].region, triangle.region);
+  assert.equal(model.triangle(model.triangleCount), null);
   // The inverse bind matrix takes a joint's own place to the origin: by columns, the last row 0 0 0 1.
-  const { inverseBind } = asset.bones.find(bone => bone.name === 'right_wrist');
+  const { inverseBind } = model.bones.find(bone => bone.name === 'right_wrist');
   assert.deepEqual([3, 7, 11, 15].map(i => inverseBind[i]), [0, 0, 0, 1]);
   const own = joints.find(joint => joint.name === 'right_wrist').inverseBind;
   assert.ok(own.every((value, i) => Math.abs(value - inverseBind[i]) < 1e-5));
-  assert.ok(asset.spheres.every(sphere => sphere.detectRadius > 0 && asset.regions[sphere.region]));
-  asset.dispose();
+  assert.ok(model.spheres.every(sphere => sphere.detectRadius > 0 && model.regions[sphere.region]));
+  model.dispose();
 });
 
 test('each frame of a clip gives the bits that the C interface gives', () => {
-  const asset = spherechain.open(bytes);
+  const model = spherechain.createModel(bytes, joints), body = model.createBody({ findsSteps: true }), filter = filterOf(model);
   const wanted = readFileSync(nativeFile, 'utf8').trim().split('\n');
   assert.equal(wanted.length, frames.length);
-  frames.forEach((palette, frame) => {
-    if (frame % 4 !== 2) return;  // the arms are crossed from 27 on
-    const character = asset.createCharacter(joints);
-    character.setPalette(palette);
-    assert.equal(frameHashes(character), wanted[frame], `frame ${frame}`);
-    character.dispose();
-  });
-  asset.dispose();
+  for (let frame = 2; frame < frames.length; frame += 4) {  // the arms are crossed from 27 on
+    assert.equal(frameHashes(body, filter, frames, frame), wanted[frame], `frame ${frame}`);
+  }
+  model.dispose();
 });
 
-test('two characters give the bits that the C interface gives', () => {
-  const asset = spherechain.open(bytes);
-  const a = asset.createCharacter(joints), b = spherechain.open(bytes).createCharacter(joints);
-  refuses(() => a.contactsWith(b), /setPalette/);
+test('two bodies give the bits that the C interface gives', () => {
+  const model = spherechain.createModel(bytes, joints), otherModel = spherechain.createModel(bytes, joints);
+  const a = model.createBody({ findsSteps: true, largestOther: otherModel }), b = otherModel.createBody({ findsSteps: true });
+  refuses(() => a.contacts(b), /setPose/);
   const wanted = readFileSync(pairFile, 'utf8').trim().split('\n');
-  wanted.forEach((line, i) => {
-    a.setPalette(frames[10 * i]);
-    b.setPalette(frames[10 * i].map((value, k) => (k % 16 === 12 || k % 16 === 14 ? value + Math.fround(0.3) : value)));
-    assert.equal(pairHashes(a, b), line, `frame ${10 * i}`);
-  });
-  a.setPalette(posed);
-  const alone = frameHashes(a), [found] = a.penetrationsWith(b, false);
-  assert.equal(frameHashes(a), alone);
-  assert.equal(a.penetrationsWith(b, false)[0], found);
-  for (const other of [a, null, asset]) refuses(() => a.contactsWith(other), /another character/);
-  refuses(() => a.penetrationsWith(b, 'full'), /true or false/);
-  b.asset.dispose();
-  refuses(() => a.contactsWith(b), /disposed/);
-  asset.dispose();
+  wanted.forEach((line, i) => assert.equal(pairHashes(a, b, frames, 10 * i), line, `frame ${10 * i}`));
+  a.setPose(posed);
+  b.setPose(posed, { place: { translation: [0.1, 0, 0] } });
+  const alone = structuredClone(a.penetrations()), found = a.penetrations(b), [first] = found;
+  assert.ok(found.length > 0 && first.measures.relation === 'two_bodies' && first.measures.restDistance === Infinity);
+  assert.deepEqual(structuredClone(a.penetrations()), alone);
+  assert.equal(a.penetrations(b), found);
+  assert.equal(found[0], first);
+  refuses(() => a.contacts(a), /another body/);
+  for (const other of [model, null, 'b']) {
+    refuses(() => a.contacts(other, {}), /another body/);
+    refuses(() => a.contacts(other), /query: /);
+  }
+  otherModel.dispose();
+  refuses(() => a.contacts(b), /disposed/);
+  model.dispose();
+});
+
+test('a query says what is listed', () => {
+  const model = spherechain.createModel(bytes, joints), body = model.createBody();
+  body.setPose(posed);
+  const all = structuredClone(body.penetrations({ classes: spherechain.classes })), faults = structuredClone(body.penetrations());
+  assert.equal(all.total, all.length);
+  assert.ok(faults.length > 1 && all.length > faults.length);
+  assert.deepEqual([...faults], all.slice(0, faults.length).filter(({ kind }) => ['deep_fold', 'penetration'].includes(kind)));
+  const limited = structuredClone(body.penetrations({ limit: 1 }));
+  assert.deepEqual([limited.length, limited.total, limited[0]], [1, faults.length, faults[0]]);
+  assert.equal(model.createBody({ maxPenetrations: 1 }).model, model);
+  // The classes of full measurements follow from them, by any rule.
+  const full = body.penetrations({ detail: 'full', classes: spherechain.classes });
+  for (const { kind, measures } of full) assert.equal(spherechain.classify(measures), kind);
+  const { depth } = full[0].measures, { version, touchDepth, deepFold } = spherechain.defaultRule;
+  assert.deepEqual([version, touchDepth], [2, 0]);
+  assert.ok(deepFold > 0);
+  assert.equal(spherechain.classify(full[0].measures, { touchDepth: 2 * depth, hidden: 0, shell: 0, fold: 0, neighbours: 0 }), 'touch');
+  assert.equal(body.penetrations({ rule: { ...spherechain.defaultRule, touchDepth: 2 * depth } }).length, 0);
+  const pair = [faults[0].part, faults[0].other];
+  assert.deepEqual(structuredClone([...body.penetrations({ partPairs: [pair] })]), [faults[0]]);
+  assert.equal(body.contacts({ partPairs: [pair] }).parts.length, 1);
+  refuses(() => body.contacts({ partPairs: [[0, 99]] }), /partPairs: \[0, 99\]/);
+  // Everything is ignored.
+  const filter = model.createFilter();
+  for (let a = 0; a < model.regionCount; ++a) for (let b = 0; b <= a; ++b) filter.ignoreRegions(a, b);
+  assert.equal(body.contacts({ filter }).parts.length, 0);
+  assert.equal(body.spherePairs({ filter }).total, 0);
+  const { triangles, triangleTotal } = body.contacts({ detail: 'full' });
+  assert.equal(triangles.length, 12 * triangleTotal);
+  const small = model.createBody({ maxTriangles: 2 });
+  small.setPose(posed);
+  assert.deepEqual([small.contacts({ detail: 'full' }).triangles.length, small.contacts({ detail: 'full' }).triangleTotal], [24, triangleTotal]);
+  assert.deepEqual(structuredClone(small.contacts().parts), structuredClone(body.contacts().parts));
+  // A direction that was given stays.
+  const turned = structuredClone(body.penetrations()).map(found => ({ ...found, direction: found.direction.map(x => -x) }));
+  body.penetrations({ previous: turned }).forEach(({ distance, measures }) => assert.ok(distance <= 1.26 * measures.depth));
+  for (const [query, message] of [
+    [{ scope: 'everything' }, /scope "everything": one of apart, neighbours, all/],
+    [{ detail: 'slow' }, /detail "slow": one of quick, full/],
+    [{ classes: ['fault'] }, /classes "fault": one of rest, shell/],
+    [{ classes: 'touch' }, /classes: a list is wanted/],
+    [{ radius: 'large' }, /radius "large": one of detect, fit/],
+    [{ limit: '3' }, /limit: a whole number is wanted, not "3"/],
+    [{ limt: 3 }, /query: "limt" is none of scope, /],
+    [{ rule: { touchdepth: 1 } }, /rule: "touchdepth" is none of version, touchDepth/],
+    [{ rule: { version: 1 } }, /rule/],
+    [{ rule: { shell: NaN } }, /rule/],
+    [{ previous: 3 }, /previous: a list is wanted, not 3/],
+    [{ previous: [{}] }, /./],
+    [{ filter: {} }, /filter: what createFilter\(\) made is wanted, not an Object/],
+    [{ ignoredParts: [1] }, /ignored/],
+    [{ ignoredParts: [-1] }, /ignoredParts: -1 is no body part/],
+    [7, /query: an object is wanted, not 7/],
+  ]) refuses(() => body.penetrations(query), message);
+  refuses(() => filter.ignorePair(0, model.sphereCount), /bad|not exist|value/);
+  filter.dispose();
+  refuses(() => filter.ignorePair(0, 1), /disposed/);
+  refuses(() => body.contacts({ filter }), /filter/);
+  model.dispose();
+});
+
+test('steps, the ground and bounds', () => {
+  const model = spherechain.createModel(bytes, joints), body = model.createBody({ findsSteps: true });
+  body.setPose(rest);
+  refuses(() => body.steps(), /two poses/);
+  assert.deepEqual([...body.steps.call(moved(body, posed))].map(({ atStart }) => atStart).includes(false), true);
+  const { low, high } = body.bounds(), top = high[1];
+  assert.ok(low.every((value, i) => value < high[i]));
+  assert.equal(body.below({ up: [0, 1, 0], height: low[1] - 1 }).total, 0);
+  const under = body.below({ up: [0, 1, 0], height: top + 1 }), [first] = under;
+  assert.equal(under.length, model.partCount);
+  assert.deepEqual([first.other, first.deepestOther.triangle, [...first.direction]], [-1, -1, [0, 1, 0]]);
+  const feet = model.parts.flatMap(({ name }, i) => (/foot|shin|thigh/.test(name) ? [] : [i]));
+  const some = body.below({ height: low[1] + 0.125 * model.height }, { ignoredParts: feet });
+  assert.ok(some.length > 0 && some.every(({ part }) => !feet.includes(part)));
+  refuses(() => body.below({ up: [0, 2, 0], height: 0 }), /./);
+  refuses(() => body.below({ up: 1 }), /up: 3 numbers are wanted, not 1/);
+  refuses(() => body.below(), /ground: an object is wanted/);
+  const plain = model.createBody();
+  moved(moved(plain, rest), posed);
+  refuses(() => plain.steps(), /findsSteps/);
+  refuses(() => model.createBody({ findSteps: true }), /"findSteps" is none of/);
+  refuses(() => model.createBody({ largestOther: body }).contacts(), /./);
+  model.dispose();
+
+  function moved(one, palette) {
+    one.setPose(palette);
+    return one;
+  }
+});
+
+test('a pose has a place, or vertices', () => {
+  const model = spherechain.createModel(bytes, joints), body = model.createBody(), other = model.createBody();
+  const place = { translation: [1, 2, 3], rotation: [0, 1, 0, 0] };  // half a turn about y
+  body.setPose(posed, { place });
+  other.setPose(posed);
+  const wanted = other.spherePairs().spheres.slice(), found = body.spherePairs().spheres;
+  for (let i = 0; i < found.length; i += 4) {
+    for (const [axis, sign] of [[0, -1], [1, 1], [2, -1]]) {
+      assert.ok(Math.abs(found[i + axis] - (place.translation[axis] + sign * wanted[i + axis])) < 1e-4);
+    }
+  }
+  refuses(() => body.setPose(posed, { place: { translation: [1, 2] } }), /translation: 3 numbers are wanted, not an Array of 2/);
+  refuses(() => body.setPose(posed, { place: { position: [1, 2, 3] } }), /place: "position" is none of/);
+  refuses(() => body.setPose(posed, { place: { rotation: [0, 0, 0, 0] } }), /transform/);
+  refuses(() => body.contacts(), /setPose/);
+  const vertices = new Float32Array(3 * model.vertexCount).fill(0.5);
+  body.setPose(null, { vertices });
+  vertices.fill(NaN);  // it was copied
+  assert.ok(body.vertices().every(value => value === 0.5));
+  assert.equal(body.contacts().parts.length, 0);
+  assert.deepEqual([...body.bounds().low, ...body.bounds().high], Array(6).fill(0.5));
+  refuses(() => body.setPose(null, { vertices }), /vertex 0 is not finite/);
+  refuses(() => body.setPose(null, { vertices: vertices.subarray(3) }), new RegExp(`${vertices.length} floats are wanted`));
+  refuses(() => body.setPose(null, {}), /no floats/);
+  refuses(() => body.setPose(posed, { vertexes: vertices }), /"vertexes" is none of morphWeights, place, vertices/);
+  refuses(() => body.setPose(posed, new Float32Array(3)), /"0" is none of/);
+  model.dispose();
 });
 
 test('palettes come by columns or rows, in the order of the joints', () => {
-  const asset = spherechain.open(bytes);
-  const spheresOf = (character, palette) => {
-    character.setPalette(palette);
-    return character.refit().slice();
+  const spheresOf = (ordered, palette) => {
+    const body = spherechain.createModel(bytes, ordered).createBody();
+    body.setPose(palette);
+    const spheres = body.spherePairs().spheres.slice();
+    body.model.dispose();
+    return spheres;
   };
   const byColumns = posed;
-  const wanted = spheresOf(asset.createCharacter(joints), byColumns);
+  const wanted = spheresOf(joints, byColumns);
   const byRows = new Float32Array(12 * joints.length).map((_, i) =>
     byColumns[16 * Math.floor(i / 12) + 4 * (i % 4) + Math.floor((i % 12) / 4)]);
-  assert.deepEqual(spheresOf(asset.createCharacter(joints), byRows), wanted);
+  assert.deepEqual(spheresOf(joints, byRows), wanted);
   const turned = [...joints].reverse();
   const reversed = new Float32Array(byColumns.length).map((_, i) => byColumns[16 * (joints.length - 1 - Math.floor(i / 16)) + (i % 16)]);
-  assert.deepEqual(spheresOf(asset.createCharacter(turned), reversed), wanted);
-  assert.notDeepEqual(spheresOf(asset.createCharacter(joints), reversed), wanted);
-  asset.dispose();
+  assert.deepEqual(spheresOf(turned, reversed), wanted);
+  assert.notDeepEqual(spheresOf(joints, reversed), wanted);
 });
 
 test('a palette’s scale changes depths, and no class', () => {
-  const asset = spherechain.open(bytes), character = asset.createCharacter(joints);
+  const model = spherechain.createModel(bytes, joints), body = model.createBody();
   const answers = palette => {
-    character.setPalette(palette);
-    return character.penetrations(false).map(({ part, other, kind, depth }) => ({ part, other, kind, depth }));
+    body.setPose(palette);
+    return body.penetrations({ detail: 'full', classes: spherechain.classes })
+      .map(({ part, other, kind, measures }) => ({ part, other, kind, depth: measures.depth }));
   };
   const own = answers(posed), small = answers(posed.map((value, i) => (i % 4 === 3 ? value : value / 100)));
   assert.ok(own.some(({ kind }) => kind === 'penetration'));
   assert.deepEqual(small.map(({ part, other, kind }) => [part, other, kind]), own.map(({ part, other, kind }) => [part, other, kind]));
   small.forEach(({ depth }, i) => assert.ok(Math.abs(100 * depth / own[i].depth - 1) < 0.3));
-  asset.dispose();
+  model.dispose();
 });
 
 test('vertices lie in the spheres’ space, and triangles name them', () => {
-  const asset = spherechain.open(bytes);
-  const character = asset.createCharacter(joints);
-  character.setPalette(posed);
-  const found = character.penetrations()[0].deepest, vertices = character.vertices();
-  assert.ok(asset.triangles.every(vertex => 3 * vertex + 2 < vertices.length));
+  const model = spherechain.createModel(bytes, joints), body = model.createBody();
+  refuses(() => body.vertices(), /setPose/);
+  body.setPose(posed);
+  const { deepest, part } = body.penetrations()[0], vertices = body.vertices();
+  assert.equal(model.triangle(deepest.triangle).part, part);
+  assert.ok(model.triangles.every(vertex => 3 * vertex + 2 < vertices.length));
   for (const axis of [0, 1, 2]) {
-    const corners = [0, 1, 2].map(k => vertices[3 * asset.triangles[3 * found.triangle + k] + axis]);
-    const place = corners.reduce((sum, value, k) => sum + value * found.weights[k], 0);
-    assert.ok(Math.abs(place - found.position[axis]) < 1e-5);
+    const corners = [0, 1, 2].map(k => vertices[3 * model.triangles[3 * deepest.triangle + k] + axis]);
+    const place = corners.reduce((sum, value, k) => sum + value * deepest.weights[k], 0);
+    assert.ok(Math.abs(place - deepest.position[axis]) < 1e-5);
   }
-  asset.dispose();
+  model.dispose();
 });
 
 test('views are the same object while nothing grows, and lists are used again', () => {
-  const asset = spherechain.open(bytes);
-  const character = asset.createCharacter(joints);
-  character.setPalette(posed);
-  const penetrations = character.penetrations(), [one] = penetrations, first = character.refit();
-  character.setPalette(frames[frames.indexOf(posed) + 1]);
-  assert.equal(character.refit(), first);
-  assert.equal(character.penetrations(), penetrations);
+  const model = spherechain.createModel(bytes, joints), body = model.createBody();
+  body.setPose(posed);
+  const penetrations = body.penetrations(), [one] = penetrations, { parts } = body.contacts(), first = body.spherePairs().spheres;
+  body.setPose(frames[frames.indexOf(posed) + 1]);
+  assert.equal(body.spherePairs().spheres, first);
+  assert.equal(body.penetrations(), penetrations);
   assert.equal(penetrations[0], one);
-  const opened = Array.from({ length: 20 }, () => spherechain.open(bytes));  // the memory grows
+  assert.equal(body.contacts().parts, parts);
+  const opened = [];
+  while (first.length > 0 && opened.length < 500) opened.push(spherechain.createModel(bytes));  // until the memory grows
   assert.equal(first.length, 0);
-  assert.equal(character.refit().length, 4 * asset.spheres.length);
+  assert.equal(body.spherePairs().spheres.length, 4 * model.sphereCount);
   for (const other of opened) other.dispose();
-  asset.dispose();
+  model.dispose();
 });
 
 test('broken bytes are refused', () => {
-  refuses(() => spherechain.open(new Uint8Array(0)), /./);
-  refuses(() => spherechain.open(new TextEncoder().encode('{"not": "an asset", "but": "long enough to be one"}')), /asset/);
-  refuses(() => spherechain.open(null), /\.sphc/);
-  refuses(() => spherechain.open([...bytes]), /ArrayBuffer or a Uint8Array, not an Array of \d+$/);
-  refuses(() => spherechain.open(new DataView(bytes.buffer)), /not a DataView/);
-  refuses(() => spherechain.open(new SharedArrayBuffer(8)), /not a SharedArrayBuffer/);
-  refuses(() => spherechain.open(Promise.resolve(bytes)), /not a Promise: await it/);
-  refuses(() => spherechain.open(new Blob([bytes])), /not a Blob: await its arrayBuffer\(\)/);
-  for (let part = 1; part < 32; ++part) refuses(() => spherechain.open(bytes.subarray(0, Math.floor((bytes.length * part) / 32))), /./);
+  refuses(() => spherechain.createModel(new Uint8Array(0)), /./);
+  refuses(() => spherechain.createModel(new TextEncoder().encode('{"not": "an asset", "but": "long enough to be one"}')), /asset/);
+  refuses(() => spherechain.createModel(null), /\.sphc/);
+  refuses(() => spherechain.createModel([...bytes]), /ArrayBuffer or a Uint8Array, not an Array of \d+$/);
+  refuses(() => spherechain.createModel(new DataView(bytes.buffer)), /not a DataView/);
+  refuses(() => spherechain.createModel(new SharedArrayBuffer(8)), /not a SharedArrayBuffer/);
+  refuses(() => spherechain.createModel(Promise.resolve(bytes)), /not a Promise: await it/);
+  refuses(() => spherechain.createModel(new Blob([bytes])), /not a Blob: await its arrayBuffer\(\)/);
+  for (let part = 1; part < 32; ++part) refuses(() => spherechain.createModel(bytes.subarray(0, Math.floor((bytes.length * part) / 32))), /./);
   let refused = 0;
   for (let i = 0; i < 60; ++i) {
     const broken = bytes.slice();
     broken[(i * 7919 * 131) % broken.length] ^= 1 << i % 8;
     try {
-      const asset = spherechain.open(broken);
-      const character = asset.createCharacter();
-      character.setPalette(new Float32Array(12 * asset.bones.length).map((_, k) => (k % 12 % 5 === 0 ? 1 : 0)));
-      character.penetrations();
-      asset.dispose();
+      const model = spherechain.createModel(broken), body = model.createBody();
+      body.setPose(new Float32Array(12 * model.boneCount).map((_, k) => (k % 12 % 5 === 0 ? 1 : 0)));
+      body.penetrations();
+      model.dispose();
     } catch (error) {
       assert.ok(error instanceof SpherechainError, `${error.stack}`);
       ++refused;
     }
   }
   assert.ok(refused > 0);
-  spherechain.open(bytes).dispose();  // the module still works
+  spherechain.createModel(bytes).dispose();  // the module still works
 });
 
 test('wrong arguments are refused', () => {
-  const asset = spherechain.open(bytes);
-  const character = asset.createCharacter(joints);
-  refuses(() => character.contacts(), /setPalette/);
-  refuses(() => character.setPalette(new Float32Array(15)), new RegExp(`15 floats: ${16 * joints.length}`));
-  refuses(() => character.setPalette(undefined), /no floats/);
-  refuses(() => character.setPalette(rest, new Float32Array(3)), /3 morph weights: the asset has 0/);
-  character.setPalette(rest);
-  refuses(() => character.refit('large'), /"large": one of detect, fit/);
-  refuses(() => character.contacts('everything'), /one of apart, neighbours, all/);
-  refuses(() => asset.createCharacter(joints.slice(1)), new RegExp(`bone "${joints[0].name}"`));
-  refuses(() => asset.createCharacter(joints.map(joint => ({ ...joint, inverseBind: joint.inverseBind.map(x => 2 * x) }))), /inverse bind/);
-  character.setPalette(posed);
-  refuses(() => character.checkRest(), /bind pose/);
-  refuses(() => character.penetrations('full'), /true or false is wanted, not "full"/);
+  const model = spherechain.createModel(bytes, joints), body = model.createBody();
+  refuses(() => body.contacts(), /setPose/);
+  refuses(() => body.setPose(new Float32Array(15)), new RegExp(`15 floats: ${16 * joints.length}`));
+  refuses(() => body.setPose(undefined), /no floats/);
+  refuses(() => body.setPose(rest, { morphWeights: new Float32Array(3) }), /3 morph weights: the asset has 0/);
+  refuses(() => spherechain.createModel(bytes, joints.slice(1)), new RegExp(`bone "${joints[0].name}"`));
+  const doubled = joints.map(joint => ({ ...joint, inverseBind: joint.inverseBind.map(x => 2 * x) }));
+  refuses(() => spherechain.createModel(bytes, doubled), /inverse bind/);
+  model.checkRest(rest);
+  refuses(() => model.checkRest(posed), /bind pose/);
+  refuses(() => model.checkRest(rest.subarray(1)), /are wanted/);
   for (const value of [NaN, Infinity, -Infinity]) {
     const palette = rest.slice();
     palette[16 * 3 + 5] = value;
-    refuses(() => character.setPalette(palette), new RegExp(`bone "${joints[3].name}" \\(joint 3\\) is not finite`));
-    refuses(() => character.contacts(), /setPalette/);
+    refuses(() => body.setPose(palette), new RegExp(`bone "${joints[3].name}" \\(joint 3\\) is not finite`));
+    refuses(() => body.contacts(), /setPose/);
   }
-  character.setPalette(rest.map(value => 1e38 * value));
-  character.detect();
-  character.penetrations();
-  character.vertices();
-  asset.dispose();
-  refuses(() => character.refit(), /disposed/);
-  refuses(() => asset.createCharacter(), /disposed/);
-  asset.dispose();
-  character.dispose();
+  body.setPose(rest.map(value => 1e38 * value));
+  body.spherePairs();
+  body.penetrations();
+  body.vertices();
+  model.dispose();
+  for (const call of [() => body.spherePairs(), () => body.setPose(rest), () => body.vertices(), () => body.bounds(),
+    () => model.createBody(), () => model.createFilter(), () => model.triangle(0), () => model.checkRest(rest)]) refuses(call, /disposed/);
+  model.dispose();
+  body.dispose();
 });
 
 test('a skeleton that does not fit is refused, and the joint named', () => {
-  const asset = spherechain.open(bytes);
   const { name } = joints[2], changed = change => joints.map((joint, i) => (i === 2 ? { ...joint, ...change } : joint));
   const joint = `joint "${name}" \\(joints\\[2\\]\\): inverseBind`;
   for (const [wrong, message] of [
@@ -218,20 +345,21 @@ test('a skeleton that does not fit is refused, and the joint named', () => {
     [changed({ inverseBind: undefined }), new RegExp(`${joint} is missing, but joint "${joints[0].name}" has one`)],
     [joints.map(one => ({ ...one, name: one.name.replace('_', '') })), /bone "left_\w+".*but "left\w+" is/],
   ]) {
-    refuses(() => asset.createCharacter(wrong), message);
+    refuses(() => spherechain.createModel(bytes, wrong), message);
   }
-  assert.equal(asset.createCharacter(joints.map(one => ({ name: one.name }))).jointCount, joints.length);
-  asset.dispose();
+  const named = spherechain.createModel(bytes, [{ name: 'of no bone' }, ...joints.map(({ name: own }) => ({ name: own }))]);
+  assert.equal(named.jointCount, joints.length + 1);
+  named.dispose();
 });
 
 test('memory is given back', () => {
   const round = () => {
-    const asset = spherechain.open(bytes);
-    const character = asset.createCharacter(joints);
-    character.setPalette(posed);
-    character.penetrations();
-    const { buffer } = character.refit();
-    asset.dispose();
+    const model = spherechain.createModel(bytes, joints), body = model.createBody(), filter = model.createFilter();
+    body.setPose(posed);
+    body.setPose(null, { vertices: new Float32Array(3 * model.vertexCount) });
+    body.penetrations({ filter });
+    const { buffer } = body.vertices();
+    model.dispose();
     return buffer.byteLength;
   };
   const first = round();

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // bench.mjs PACKAGE REFERENCE CHROMIUM (ASSET PALETTES)...: each clip natively, in Node and in Chromium: first the same bits, then
-// milliseconds a frame of each call with its setPalette(); what the first frame costs; how far quick depths are from thorough ones.
+// milliseconds a frame of each call with its setPose(); what the first frame costs; how far quick depths are from full ones.
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { basename } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { measureInChromium } from './in_chromium.mjs';
-import { measure, quickAgainstThorough } from './measure.mjs';
+import { measure, quickAgainstFull } from './measure.mjs';
 
 const PASSES = 8;
-const CALLS = ['refit', 'detect', 'vertices', 'contacts', 'penetrations', 'thorough'];
+const CALLS = ['spherePairs', 'vertices', 'contacts', 'penetrations', 'full'];
 const [packageFolder, reference, chromium, ...clips] = process.argv.slice(2);
 const { load } = await import(pathToFileURL(`${packageFolder}/index.js`));
 const bytes = file => new Uint8Array(readFileSync(file)).buffer;
@@ -34,8 +34,8 @@ for (; clips.length > 1; clips.splice(0, 2)) {
     if (different > 0) throw new Error(`${run.name}: ${different} frames differ from the native ones`);
     row(run.name, [...CALLS.map(call => run[call]?.toFixed(4)), run.first?.open.toFixed(0), run.first?.frame.toFixed(1)]);
   }
-  const { ratios, otherKinds } = await quickAgainstThorough(load, bytes(asset), bytes(palettes));
+  const { ratios, otherClasses, otherFaults } = await quickAgainstFull(load, bytes(asset), bytes(palettes));
   const at = share => `${(100 * (ratios[Math.floor(share * (ratios.length - 1))] - 1)).toFixed(1)} %`;
-  console.log(`  quick depths are longer than thorough ones by ${at(0.5)} in the median, ${at(0.9)} in one case of ten, ${at(0.99)} in one of a hundred; ` +
-    `of ${ratios.length}, ${ratios.filter(ratio => ratio < 0.999).length} are shorter, and ${otherKinds} have another class`);
+  console.log(`  quick depths are longer than full ones by ${at(0.5)} in the median, ${at(0.9)} in one case of ten, ${at(0.99)} in one of a hundred; of ` +
+    `${ratios.length}, ${ratios.filter(ratio => ratio < 0.999).length} are shorter, ${otherClasses} have another class, ${otherFaults} are a fault in one form alone`);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The line that reference.cpp prints of a frame, by the package: for Node and for a page.
+// The lines that reference.cpp prints, by the package: for Node and for a page.
 const KINDS = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration'];
 const RELATIONS = ['apart', 'near', 'siblings', 'joined', 'two_bodies'];
 
@@ -11,56 +11,107 @@ class Hash {
   floats(array) {
     this.words(new Uint32Array(Float32Array.from(array).buffer));
   }
-  get hex() {
-    return (this.value >>> 0).toString(16).padStart(8, '0');
+  penetrations(list) {
+    for (const found of list) addPenetration(this, found);
+    this.words([list.total]);
+  }
+  contacts({ parts, spheres, sphereTotal, triangles, triangleTotal }) {
+    for (const contact of parts) addPartContact(this, contact);
+    this.words([parts.total, ...spheres, sphereTotal]);
+    this.words(triangles);
+    this.words([triangleTotal]);
+  }
+  spherePairs({ spheres, pairs, total }) {
+    this.floats(spheres);
+    this.words([spheres.length / 4, ...pairs, total]);
+  }
+  steps(list) {
+    for (const found of list) {
+      this.words([found.partA, found.partB, found.atStart ? 1 : 0, found.atEnd ? 1 : 0]);
+      this.floats([found.begin, found.end]);
+      this.words([found.triangleA, found.triangleB]);
+      this.floats(found.at);
+    }
+    this.words([list.total]);
   }
 }
 
-// The words of an sc_penetration. `hash` has words() and floats().
-export function addPenetration(hash, found) {
-  hash.words([found.part, found.other, found.bone, KINDS.indexOf(found.kind)]);
-  hash.floats([...found.direction, found.distance, ...found.centre, ...found.low, ...found.high]);
-  for (const point of [found.deepest, found.deepestOther]) {
+// The words of an sc_part_contact, and of an sc_penetration. `hash` has words() and floats().
+export function addPartContact(hash, contact) {
+  hash.words([contact.partA, contact.partB, contact.trianglePairs]);
+  hash.floats([...contact.low, ...contact.high]);
+}
+export function addPenetration(hash, { part, other, joint, kind, direction, distance, centre, low, high, deepest, deepestOther, measures }) {
+  hash.words([part, other, joint, KINDS.indexOf(kind)]);
+  hash.floats([...direction, distance, ...centre, ...low, ...high]);
+  for (const point of [deepest, deepestOther]) {
     hash.floats(point.position);
     hash.words([point.triangle]);
     hash.floats(point.weights);
   }
-  hash.floats([found.depth, found.volume ?? -1, found.contourLength, found.visible, found.touching, found.facing]);
-  hash.floats([found.restDistance, found.thickness ?? -1, found.swallowed ?? -1, found.height, found.metre]);
-  hash.words([RELATIONS.indexOf(found.relation), found.isOnePiece ? 1 : 0]);
+  hash.floats([measures.depth, measures.volume ?? -1, measures.contourLength, measures.visible, measures.touching, measures.facing]);
+  hash.floats([measures.restDistance, measures.thickness ?? -1, measures.swallowed ?? -1, measures.height, measures.metre]);
+  hash.words([RELATIONS.indexOf(measures.relation), measures.isOnePiece ? 1 : 0]);
 }
 
-function hashPenetrations(list) {
+// A line of hashes: each of what its function adds.
+const line = answers => answers.map(answer => {
   const hash = new Hash();
-  for (const found of list) addPenetration(hash, found);
-  return hash;
+  answer(hash);
+  return (hash.value >>> 0).toString(16).padStart(8, '0');
+}).join(' ');
+
+// A body of a model with `findsSteps`, and `filter` of filterOf().
+export function frameHashes(body, filter, frames, frame) {
+  body.setPose(frames[Math.max(frame - 1, 0)]);
+  const previous = body.penetrations();
+  body.setPose(frames[frame]);
+  return line([
+    hash => hash.penetrations(body.penetrations({ previous })),
+    hash => { for (const radius of ['detect', 'fit']) hash.spherePairs(body.spherePairs({ radius })); },
+    hash => {
+      hash.contacts(body.contacts({ detail: 'full' }));
+      hash.contacts(body.contacts());
+    },
+    hash => hash.penetrations(body.penetrations()),
+    hash => hash.penetrations(body.penetrations({ classes: KINDS })),
+    hash => hash.penetrations(body.penetrations({ detail: 'full', classes: KINDS })),
+    hash => hash.penetrations(body.penetrations({ classes: ['touch', 'penetration'], rule: { touchDepth: 0.0625 }, limit: 1 })),
+    hash => {
+      hash.penetrations(body.penetrations({ classes: KINDS, filter }));
+      hash.spherePairs(body.spherePairs({ filter }));
+    },
+    hash => {
+      const { low, high } = body.bounds(), height = Math.fround(low[1] + 0.0625 * body.model.height);
+      for (const corner of [low, high]) {
+        hash.floats(corner);
+        hash.words([0]);
+      }
+      hash.penetrations(body.below({ up: [0, 1, 0], height }, { classes: KINDS }));
+    },
+    hash => hash.steps(body.steps()),
+  ]);
 }
 
-function hashContacts(list) {
-  const hash = new Hash();
-  for (const contact of list) {
-    hash.words([contact.partA, contact.partB, contact.trianglePairs]);
-    hash.floats([...contact.low, ...contact.high]);
-  }
-  return hash;
+export function filterOf(model) {
+  const filter = model.createFilter();
+  filter.ignoreRegions(0, 1);
+  filter.ignorePair(0, 1, false);
+  return filter;
 }
 
 // The line of --pair.
-export function pairHashes(a, b) {
-  const contacts = a.contactsWith(b);
-  const hashes = [hashContacts(contacts), hashPenetrations(a.penetrationsWith(b)), hashPenetrations(a.penetrationsWith(b, false))];
-  return `${contacts.length} ${hashes.map(hash => hash.hex).join(' ')}`;
-}
-
-// Of the palette that was set. A new character for each frame: the thorough measure keeps the frame before.
-export function frameHashes(character) {
-  const spheres = new Hash(), pairs = new Hash(), triangles = new Hash();
-  for (const radius of ['detect', 'fit']) {
-    spheres.floats(character.refit(radius));
-    pairs.words(character.detect(radius));
+export function pairHashes(a, b, frames, frame) {
+  for (const palette of frames.slice(frame, frame + 2)) {
+    a.setPose(palette);
+    b.setPose(palette, { place: { translation: [0.3, 0, 0.3] } });
   }
-  const parts = hashContacts(character.contacts());
-  triangles.words(character.triangleContacts().pairs);
-  const quick = hashPenetrations(character.penetrations()), thorough = hashPenetrations(character.penetrations(false));
-  return [spheres, pairs, parts, triangles, quick, thorough].map(hash => hash.hex).join(' ');
+  const ignored = { classes: KINDS, ignoredParts: Array.from({ length: 16 }, (_, i) => 2 * i), ignoredPartsOfOther: [1, 2] };
+  return `${a.contacts(b).parts.length} ${line([
+    hash => hash.contacts(a.contacts(b, { detail: 'full' })),
+    hash => hash.penetrations(a.penetrations(b)),
+    hash => hash.penetrations(a.penetrations(b, { detail: 'full', classes: KINDS })),
+    hash => hash.penetrations(a.penetrations(b, ignored)),
+    hash => hash.steps(a.steps(b)),
+  ])}`;
 }

@@ -2,7 +2,7 @@
 // golden.mjs PACKAGE FOLDER CLIP: the golden hashes of tests/golden that come from bone matrices, by the package.
 import { readFileSync } from 'node:fs';
 import { pathToFileURL } from 'node:url';
-import { addPenetration } from './frame_hashes.mjs';
+import { addPartContact, addPenetration } from './frame_hashes.mjs';
 
 const [packageFolder, folder, clip] = process.argv.slice(2);
 const { load } = await import(pathToFileURL(`${packageFolder}/index.js`));
@@ -35,55 +35,53 @@ class Hash {
 }
 
 const END = 0xffffffff;
-const asset = (await load()).open(readFileSync(`${folder}/doll.sphc`));
-const character = asset.createCharacter();
+const spherechain = await load();
+const model = spherechain.createModel(readFileSync(`${folder}/doll.sphc`)), body = model.createBody();
 const bytes = readFileSync(clip);
 const all = new Float32Array(bytes.buffer, bytes.byteOffset, bytes.length / 4);
-const floats = 12 * asset.bones.length, frames = all.length / floats;
+const floats = 12 * model.boneCount, frames = all.length / floats;
 
+let previous = [];
+// The hashes have penetrations by the two parts, the lesser number first.
+const lesser = ({ part, other }) => 1000 * Math.min(part, other) + Math.max(part, other);
 const hashes = new Map();
 const hash = name => hashes.get(name) ?? hashes.set(name, new Hash()).get(name);
 
 for (let frame = 0; frame < frames; ++frame) {
-  character.setPalette(all.subarray(floats * frame, floats * (frame + 1)));
+  body.setPose(all.subarray(floats * frame, floats * (frame + 1)));
   for (const radius of ['fit', 'detect']) {
     const spheres = hash(`spheres bones ${radius}`), pairs = hash(`all_pairs bones ${radius}`);
-    spheres.floats(character.refit(radius));
-    spheres.count += asset.spheres.length;
-    const found = character.detect(radius);
-    pairs.words(found);
+    const found = body.spherePairs({ radius });
+    spheres.floats(found.spheres);
+    spheres.count += model.sphereCount;
+    pairs.words(found.pairs);
     pairs.word(END);
-    pairs.count += found.length / 2;
+    pairs.count += found.total;
   }
-  const skinned = hash('skinned vertices'), positions = character.vertices();
+  const skinned = hash('skinned vertices'), positions = body.vertices();
   for (let i = 0; i < positions.length; i += 3) skinned.floats([positions[i], positions[i + 1], positions[i + 2], 0]);
   skinned.count += positions.length / 3;
 
-  const parts = hash('part contacts bones');
-  for (const contact of character.contacts()) {
-    parts.words([contact.partA, contact.partB, contact.trianglePairs]);
-    parts.floats([...contact.low, ...contact.high]);
-    ++parts.count;
-  }
+  const contacts = body.contacts({ detail: 'full' }), parts = hash('part contacts bones');
+  for (const contact of contacts.parts) addPartContact(parts, contact);
+  parts.count += contacts.parts.length;
   parts.word(END);
 
-  const { count, pairs, segments } = character.triangleContacts();
   const triangles = hash('triangle contacts bones'), crossings = hash('crossing segments bones');
-  for (let i = 0; i < 12 * count; i += 12) {
-    triangles.words(pairs.subarray(i, i + 2));
-    crossings.floats(segments.subarray(i + 6, i + 12));
+  for (let i = 0; i < contacts.triangles.length; i += 12) {
+    triangles.words(contacts.triangles.subarray(i, i + 2));
+    crossings.floats(contacts.segments.subarray(i + 6, i + 12));
   }
   triangles.word(END);
-  triangles.count += count;
+  triangles.count += contacts.triangleTotal;
   crossings.word(END);
-  crossings.count += 2 * count;
+  crossings.count += 2 * contacts.triangleTotal;
 
   if (frame % 4 === 0) {
     const measured = hash('penetrations bones');
-    for (const found of character.penetrations(false)) {
-      addPenetration(measured, found);
-      ++measured.count;
-    }
+    previous = body.penetrations({ detail: 'full', classes: spherechain.classes, previous });
+    for (const found of [...previous].sort((l, r) => lesser(l) - lesser(r))) addPenetration(measured, found);
+    measured.count += previous.total;
     measured.word(END);
   }
 }

@@ -1,38 +1,31 @@
 // SPDX-License-Identifier: MIT
 // A clip through the package: for Node and for a page.
-import { frameHashes } from './frame_hashes.mjs';
+import { filterOf, frameHashes } from './frame_hashes.mjs';
 import { readPalettes } from '../../samples/javascript/palettes.mjs';
 
-// What is timed, after setPalette(); and how often in a row, where a page's clock is too coarse for once.
+// What is timed, after setPose(); and how often in a row, where a page's clock is too coarse for once.
 const CALLS = {
-  refit: [character => character.refit(), 20],
-  detect: [character => character.detect(), 20],
-  vertices: [character => character.vertices(), 5],
-  contacts: [character => character.contacts(), 1],
-  penetrations: [character => character.penetrations(), 1],
-  thorough: [character => character.penetrations(false), 1],
+  spherePairs: [body => body.spherePairs(), 20],
+  vertices: [body => body.vertices(), 5],
+  contacts: [body => body.contacts(), 1],
+  penetrations: [body => body.penetrations(), 1],
+  full: [(body, classes) => body.penetrations({ detail: 'full', classes }), 1],
 };
 
 // `asset`, `palettes`: ArrayBuffers. Lines as reference.cpp prints them; milliseconds a frame of each call; and of the very first
 // calls: from load() to the first penetrations.
 export async function measure(load, asset, palettes, passes, calls = ['contacts', 'penetrations']) {
   const start = performance.now();
-  const opened = (await load()).open(asset);
-  const { joints, frames } = readPalettes(palettes);
-  const character = opened.createCharacter(joints), made = performance.now();
-  character.setPalette(frames.at(-1));
-  character.penetrations();
+  const spherechain = await load(), { joints, frames } = readPalettes(palettes);
+  const model = spherechain.createModel(asset, joints), body = model.createBody({ findsSteps: true }), made = performance.now();
+  body.setPose(frames.at(-1));
+  body.penetrations();
   const first = { open: made - start, frame: performance.now() - made };
 
   const times = Object.fromEntries(calls.map(name => [name, fastest(...CALLS[name])]));
-  const lines = frames.map(palette => {
-    const fresh = opened.createCharacter(joints);
-    fresh.setPalette(palette);
-    const line = frameHashes(fresh);
-    fresh.dispose();
-    return line;
-  });
-  opened.dispose();
+  const filter = filterOf(model);
+  const lines = frames.map((_, frame) => frameHashes(body, filter, frames, frame));
+  model.dispose();
   return { lines, first, ...times };
 
   // Each frame's fastest pass: other programs of the machine do not count.
@@ -42,8 +35,8 @@ export async function measure(load, asset, palettes, passes, calls = ['contacts'
       frames.forEach((palette, frame) => {
         const before = performance.now();
         for (let i = 0; i < repeats; ++i) {
-          character.setPalette(palette);
-          ask(character);
+          body.setPose(palette);
+          ask(body, spherechain.classes);
         }
         best[frame] = Math.min(best[frame], (performance.now() - before) / repeats);
       });
@@ -52,21 +45,24 @@ export async function measure(load, asset, palettes, passes, calls = ['contacts'
   }
 }
 
-// How much longer quick depths are than thorough ones, frame by frame as a clip plays: ratios, sorted; and how many classes differ.
-export async function quickAgainstThorough(load, asset, palettes) {
-  const opened = (await load()).open(asset);
-  const { joints, frames } = readPalettes(palettes);
-  const character = opened.createCharacter(joints);
+// How much longer quick depths are than full ones, frame by frame as a clip plays: ratios, sorted; and how many classes differ, and
+// how many faults.
+export async function quickAgainstFull(load, asset, palettes) {
+  const spherechain = await load(), { joints, frames } = readPalettes(palettes);
+  const model = spherechain.createModel(asset, joints), body = model.createBody(), { classes } = spherechain;
   const ratios = [];
-  let otherKinds = 0;
+  let otherClasses = 0, otherFaults = 0;
+  const isFault = ({ kind }) => kind === 'deep_fold' || kind === 'penetration';
   for (const palette of frames) {
-    character.setPalette(palette);
-    const quick = structuredClone(character.penetrations());
-    character.penetrations(false).forEach((found, i) => {
-      ratios.push(quick[i].depth / found.depth);
-      if (quick[i].kind !== found.kind) ++otherKinds;
-    });
+    body.setPose(palette);
+    const quick = new Map(structuredClone(body.penetrations({ classes })).map(found => [`${found.part} ${found.other}`, found]));
+    for (const found of body.penetrations({ classes, detail: 'full' })) {
+      const same = quick.get(`${found.part} ${found.other}`);
+      ratios.push(same.measures.depth / found.measures.depth);
+      if (same.kind !== found.kind) ++otherClasses;
+      if (isFault(same) !== isFault(found)) ++otherFaults;
+    }
   }
-  opened.dispose();
-  return { ratios: ratios.sort((a, b) => a - b), otherKinds };
+  model.dispose();
+  return { ratios: ratios.sort((a, b) => a - b), otherClasses, otherFaults };
 }

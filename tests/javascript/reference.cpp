@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What the JavaScript package must give: reference ASSET PALETTES. A line a frame of the palettes
-// (samples/csharp/write_palettes): hashes of the spheres and pairs at both radii, of contacts, triangles and
-// penetrations. --pair: instead a line every tenth frame of two characters, b in a's pose, moved 0.3 along x and z:
-// hashes of contacts, quick and thorough penetrations. --time: last a line of milliseconds a frame: contacts, then
-// contacts and penetrations. SPHERECHAIN_TARGET names an instruction set.
+// (samples/csharp/write_palettes): hashes of the answers about one body. --pair: instead a line every tenth frame of two
+// bodies. --time: last a line of milliseconds a frame: contacts, then penetrations. SPHERECHAIN_TARGET names an
+// instruction set.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -22,13 +21,6 @@
 using namespace spherechain;
 
 namespace {
-
-using Words = std::vector<std::uint64_t>;
-
-void require(const Status& status) {
-  if (status != SC_OK)
-    throw std::runtime_error(std::string(sc_field_name(status.field)) + ": " + sc_code_text(status.code));
-}
 
 std::vector<char> read(const char* path) {
   std::ifstream file(path, std::ios::binary);
@@ -87,159 +79,137 @@ struct Palettes {
   }
 };
 
-class PosedCharacter {
+void require(const Status& status) {
+  if (status != SC_OK)
+    throw std::runtime_error(std::string(sc_field_name(status.field)) + ": " + sc_code_text(status.code));
+}
+
+// The options of questions, with the instruction set that SPHERECHAIN_TARGET names.
+Query options(Detail detail = SC_DETAIL_QUICK, std::uint32_t classes = 0) {
+  Query query;
+  const char* const name = std::getenv("SPHERECHAIN_TARGET");
+  if (name != nullptr && !find_target(name, query.target))
+    throw std::runtime_error("SPHERECHAIN_TARGET: no such target here");
+  query.detail = detail;
+  query.classes = classes;
+  return query;
+}
+
+constexpr std::uint32_t kAll = 0xFFFFFFFF;  // classes
+
+// Answers of one body, as hashes in a line.
+class Line {
  public:
-  PosedCharacter(const std::vector<char>& bytes, const Palettes& palettes) : data_((bytes.size() + 7) / 8) {
-    std::memcpy(data_.data(), bytes.data(), bytes.size());
-    char message[256];
-    if (sc_asset_open(&asset_, SC_ABI_VERSION, data_.data(), bytes.size(), message, sizeof message) != SC_OK) {
-      throw std::runtime_error(message);
-    }
-    const AssetInfo info = sc_asset_get_info(&asset_);
-    joint_of_bone_.resize(info.bone_count);
-    bones_.resize(12 * info.bone_count);
-    if (sc_bind_joints(&asset_, palettes.joints.data(), palettes.joints.size(), SC_COLUMNS_4X4, joint_of_bone_.data(),
-                       info.bone_count, message, sizeof message) != SC_OK) {
-      throw std::runtime_error(message);
-    }
-    spheres_.resize(info.sphere_count);
-    pairs_.resize(info.sphere_count * info.sphere_count);
-    parts_.resize(info.part_count * info.part_count);
-    triangles_.resize(info.triangle_count);
-    penetrations_.resize(parts_.size());
-    table_.resize(sc_skin_table_words(&asset_));
-    require(sc_prepare_skin(&asset_, table_.data(), table_.size()));
-    scratch_.resize(sc_skin_scratch_words(&asset_));
-    measure_scratch_.resize(sc_penetration_scratch_words(&asset_, triangles_.size()));
-    const char* const name = std::getenv("SPHERECHAIN_TARGET");
-    if (name != nullptr && !find_target(name, target_))
-      throw std::runtime_error("SPHERECHAIN_TARGET: no such target here");
+  Line& word(std::size_t count) {
+    const auto value = static_cast<std::uint32_t>(count);
+    hash_.add(&value, 1);
+    return *this;
   }
-
-  Target target() const { return target_; }
-  void pose(const std::vector<float>& palette) {
-    Pose from;
-    from.bones = palette.data();
-    from.bone_count = palette.size() / 16;
-    from.bone_layout = SC_COLUMNS_4X4;
-    require(sc_gather_bones(&asset_, joint_of_bone_.data(), &from, bones_.data()));
-    pose_.bones = bones_.data();
-    pose_.bone_count = joint_of_bone_.size();
-    pose_.bone_layout = SC_ROWS_3X4;
+  template <typename T>
+  Line& list(const T* items, std::size_t count, std::size_t total) {
+    hash_.add(items, count);
+    return word(total);
   }
-  void hash_spheres(Hash& spheres, Hash& pairs, Radius radius) {
-    RefitJob refit;
-    refit.asset = &asset_;
-    refit.pose = pose_;
-    refit.radius = radius;
-    refit.target = target_;
-    refit.spheres = spheres_.data();
-    refit.sphere_capacity = spheres_.size();
-    require(refit.run());
-    spheres.add(spheres_.data(), spheres_.size());
-    DetectJob detect;
-    detect.asset = &asset_;
-    detect.spheres = spheres_.data();
-    detect.sphere_count = spheres_.size();
-    detect.radius = radius;
-    detect.target = target_;
-    detect.pairs = pairs_.data();
-    detect.pair_capacity = pairs_.size();
-    require(detect.run());
-    pairs.add(pairs_.data(), detect.pair_count);
+  Line& add(const Penetrations& found) { return list(found.items, found.count, found.total); }
+  Line& add(const Steps& found) { return list(found.items, found.count, found.count); }
+  Line& add(const Contacts& found) {
+    list(found.parts, found.part_count, found.part_count);
+    list(found.spheres, found.sphere_count, found.sphere_total);
+    return list(found.triangles, found.triangle_count, found.triangle_total);
   }
-  void find_contacts(bool lists_triangles) {
-    contacts_ = SkinContactJob();
-    contacts_.asset = &asset_;
-    contacts_.pose = pose_;
-    contacts_.target = target_;
-    contacts_.skin_table = table_.data();
-    contacts_.scratch = scratch_.data();
-    contacts_.scratch_words = scratch_.size();
-    contacts_.parts = parts_.data();
-    contacts_.part_capacity = parts_.size();
-    contacts_.triangles = lists_triangles ? triangles_.data() : nullptr;
-    contacts_.triangle_capacity = lists_triangles ? triangles_.size() : 0;
-    require(contacts_.run());
+  Line& add(const SpherePairs& found) {
+    list(found.spheres, found.sphere_count, found.sphere_count);
+    return list(found.pairs, found.count, found.total);
   }
-  void measure(bool quick) {
-    PenetrationJob job;
-    job.asset = &asset_;
-    job.pose = pose_;
-    job.target = target_;
-    job.skin_table = table_.data();
-    job.contacts = triangles_.data();
-    job.contact_count = contacts_.triangle_count;
-    job.quick = quick ? 1 : 0;
-    job.scratch = measure_scratch_.data();
-    job.scratch_words = measure_scratch_.size();
-    job.penetrations = penetrations_.data();
-    job.penetration_capacity = penetrations_.size();
-    require(job.run());
-    penetration_count_ = job.penetration_count;
-  }
-  void print_frame() {
-    Hash spheres, pairs, parts, triangles, quick, thorough;
-    for (const Radius radius : {SC_RADIUS_DETECT, SC_RADIUS_FIT}) hash_spheres(spheres, pairs, radius);
-    find_contacts(true);
-    parts.add(parts_.data(), contacts_.part_count);
-    triangles.add(triangles_.data(), contacts_.triangle_count);
-    measure(true);
-    quick.add(penetrations_.data(), penetration_count_);
-    measure(false);
-    thorough.add(penetrations_.data(), penetration_count_);
-    std::printf("%08x %08x %08x %08x %08x %08x\n", spheres.value, pairs.value, parts.value, triangles.value,
-                quick.value, thorough.value);
-  }
-
-  // This one is a.
-  void print_pair(const ::PosedCharacter& b) {
-    Hash hashes[3];
-    BodyContactJob found;
-    found.a = {&asset_, pose_, table_.data(), nullptr};
-    found.b = {&b.asset_, b.pose_, b.table_.data(), nullptr};
-    Words scratch(sc_body_scratch_words(&asset_, &b.asset_));
-    found.scratch = scratch.data();
-    found.scratch_words = scratch.size();
-    found.parts = parts_.data();
-    found.part_capacity = parts_.size();
-    found.triangles = triangles_.data();
-    found.triangle_capacity = triangles_.size();
-    require(found.run());
-    hashes[0].add(parts_.data(), found.part_count);
-    for (const int quick : {1, 0}) {
-      BodyPenetrationJob job;
-      job.a = found.a;
-      job.b = found.b;
-      job.contacts = triangles_.data();
-      job.contact_count = found.triangle_count;
-      job.quick = quick;
-      scratch.resize(sc_body_penetration_scratch_words(&asset_, &b.asset_, job.contact_count));
-      job.scratch = scratch.data();
-      job.scratch_words = scratch.size();
-      job.penetrations = penetrations_.data();
-      job.penetration_capacity = penetrations_.size();
-      require(job.run());
-      hashes[2 - quick].add(penetrations_.data(), job.penetration_count);
-    }
-    std::printf("%zu %08x %08x %08x\n", found.part_count, hashes[0].value, hashes[1].value, hashes[2].value);
+  void end() {
+    std::printf("%s%08x", is_first_ ? "" : " ", hash_.value);
+    is_first_ = false;
+    hash_ = {};
   }
 
  private:
-  Words data_, table_, scratch_, measure_scratch_;
-  Asset asset_;
-  Pose pose_;
-  Target target_ = SC_TARGET_BEST;
-  std::vector<std::uint32_t> joint_of_bone_;
-  std::vector<float> bones_;
-  std::vector<Sphere> spheres_;
-  std::vector<Pair> pairs_;
-  std::vector<PartContact> parts_;
-  std::vector<TriangleContact> triangles_;
-  std::vector<Penetration> penetrations_;
-  std::size_t penetration_count_ = 0;
-  SkinContactJob contacts_;
+  Hash hash_;
+  bool is_first_ = true;
 };
+
+Pose pose_of(const std::vector<float>& palette) {
+  Pose pose;
+  pose.bones = palette.data();
+  pose.bone_count = palette.size() / 16;
+  pose.bone_layout = SC_COLUMNS_4X4;
+  return pose;
+}
+
+// In frame_hashes.mjs: frameHashes().
+void print_frame(const Model& model, Body& body, const Palettes& palettes, std::size_t frame) {
+  Line line;
+  require(body.set_pose(pose_of(palettes.frames[frame == 0 ? 0 : frame - 1])));
+  const Penetrations last = body.penetrations(options());
+  require(body.set_pose(pose_of(palettes.frames[frame])));
+  Query steady = options();
+  steady.previous = last.items;
+  steady.previous_count = last.count;
+  line.add(body.penetrations(steady)).end();
+  Query spheres = options();
+  for (const Radius radius : {SC_RADIUS_DETECT, SC_RADIUS_FIT}) {
+    spheres.radius = radius;
+    line.add(body.sphere_pairs(spheres));
+  }
+  line.end();
+  line.add(body.contacts(options(SC_DETAIL_FULL))).add(body.contacts(options())).end();
+  line.add(body.penetrations(options())).end();
+  line.add(body.penetrations(options(SC_DETAIL_QUICK, kAll))).end();
+  line.add(body.penetrations(options(SC_DETAIL_FULL, kAll))).end();
+
+  Query worst = options(SC_DETAIL_QUICK, 1U << SC_CLASS_TOUCH | 1U << SC_CLASS_PENETRATION);
+  Rule rule = sc_default_rule();
+  rule.touch_depth = 0.0625F;
+  worst.rule = &rule;
+  worst.limit = 1;
+  line.add(body.penetrations(worst)).end();
+
+  std::vector<std::uint64_t> words(sc_pair_words(&model.asset()));
+  Filter filter;
+  filter.ignored = words.data();
+  filter.ignored_words = words.size();
+  require(sc_reset_filter(&model.asset(), &filter));
+  require(sc_ignore_regions(&model.asset(), &filter, 0, 1, 1));
+  require(sc_ignore_pair(&model.asset(), &filter, 0, 1, 0));
+  Query filtered = options(SC_DETAIL_QUICK, kAll);
+  filtered.filter = &filter;
+  line.add(body.penetrations(filtered)).add(body.sphere_pairs(filtered)).end();
+
+  Vec3 low, high;
+  require(body.bounds(low, high));
+  Ground ground;
+  ground.up = {0, 1, 0};
+  ground.height = low.y + 0.0625F * model.info().height;
+  line.list(&low, 1, 0).list(&high, 1, 0).add(body.below(ground, options(SC_DETAIL_QUICK, kAll))).end();
+  line.add(body.steps(options())).end();
+  std::puts("");
+}
+
+// Two characters, the second one 0.3 away along x and z. In frame_hashes.mjs: pairHashes().
+void print_pair(Body& a, Body& b, const Palettes& palettes, std::size_t frame) {
+  const Transform away{{0.3F, 0, 0.3F}, {0, 0, 0, 1}, {1, 1, 1}};
+  for (const std::size_t of : {frame, frame + 1}) {
+    require(a.set_pose(pose_of(palettes.frames[of])));
+    require(b.set_pose(pose_of(palettes.frames[of]), away));
+  }
+  Line line;
+  const Contacts contacts = a.contacts(b, options(SC_DETAIL_FULL));
+  std::printf("%zu ", contacts.part_count);
+  line.add(contacts).end();
+  line.add(a.penetrations(b, options())).end();
+  line.add(a.penetrations(b, options(SC_DETAIL_FULL, kAll))).end();
+  const std::uint64_t ignored = 0x55555555, ignored_of_other = 6;  // parts 0, 2, 4 ...; 1 and 2
+  Query query = options(SC_DETAIL_QUICK, kAll);
+  query.ignored_parts = &ignored;
+  query.ignored_parts_of_other = &ignored_of_other;
+  line.add(a.penetrations(b, query)).end();
+  line.add(a.steps(b, options())).end();
+  std::puts("");
+}
 
 // Milliseconds a frame. Each frame's fastest pass: other programs of the machine do not count.
 template <typename Frame>
@@ -269,37 +239,32 @@ int main(int argc, char** argv) {
   }
   try {
     const Palettes palettes(argv[2]);
-    ::PosedCharacter character(read(argv[1]), palettes);
-    if (is_pair) {
-      ::PosedCharacter other(read(argv[1]), palettes);
-      for (std::size_t frame = 0; frame < palettes.frames.size(); frame += 10) {
-        std::vector<float> moved = palettes.frames[frame];
-        for (std::size_t i = 12; i < moved.size(); i += 16) {
-          moved[i] += 0.3F;
-          moved[i + 2] += 0.3F;
-        }
-        character.pose(palettes.frames[frame]);
-        other.pose(moved);
-        character.print_pair(other);
-      }
-      return 0;
+    const std::vector<char> file = read(argv[1]);
+    const Model model(file.data(), file.size(), palettes.joints.data(), palettes.joints.size(), SC_COLUMNS_4X4);
+    if (!model) throw std::runtime_error(model.message());
+    BodyDef def;
+    def.finds_steps = 1;
+    Body body(model, def), other(model, def);
+    require(body.status());
+    require(other.status());
+    for (std::size_t frame = 0; is_pair && frame + 1 < palettes.frames.size(); frame += 10) {
+      print_pair(body, other, palettes, frame);
     }
-    for (const std::vector<float>& palette : palettes.frames) {
-      character.pose(palette);
-      character.print_frame();
+    for (std::size_t frame = 0; !is_pair && frame < palettes.frames.size(); ++frame) {
+      print_frame(model, body, palettes, frame);
     }
     if (!is_timed) return 0;
+    const Query query = options();
     const double contacts = time_of(palettes, [&](const std::vector<float>& palette) {
-      character.pose(palette);
-      character.find_contacts(false);
+      require(body.set_pose(pose_of(palette)));
+      body.contacts(query);
     });
     const double penetrations = time_of(palettes, [&](const std::vector<float>& palette) {
-      character.pose(palette);
-      character.find_contacts(true);
-      character.measure(true);
+      require(body.set_pose(pose_of(palette)));
+      body.penetrations(query);
     });
     Target target{};
-    resolve_target(character.target(), target);
+    resolve_target(query.target, target);
     std::printf("%s %.4f %.4f\n", sc_target_name(target), contacts, penetrations);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "reference: error: %s\n", error.what());

@@ -1,466 +1,561 @@
 // SPDX-License-Identifier: MIT
-// The package: classes over module.cpp. index.d.ts says what they do. build.mjs puts the WebAssembly into `wasm`.
+// The package: classes over the C interface. index.d.ts says what they do; module.cpp asserts how the structs below lie in memory.
+// build.mjs puts the WebAssembly into `wasm`.
 const wasm = '@WASM@';
 
-const SIDES = [null, 'left', 'right'];
-const RADII = { detect: 0, fit: 1 };
-const SCOPES = { apart: 0, neighbours: 1, all: 2 };
-const RELATIONS = ['apart', 'near', 'siblings', 'joined', 'two_bodies'];
-const ROWS_3X4 = 1, COLUMNS_4X4 = 3;  // sc_matrix_layout
-const PALETTE = 0, MORPHS = 1, SPHERES = 2, PAIRS = 3, PAIR_COUNT = 4, CONTACTS = 5, CONTACT_COUNT = 6, TRIANGLES = 7,
-  TRIANGLE_COUNT = 8, PENETRATIONS = 9, PENETRATION_COUNT = 10, VERTICES = 11, VERTEX_COUNT = 12,
-  CONTACTS_WITH = 13, CONTACT_WITH_COUNT = 14, PENETRATIONS_WITH = 15, PENETRATION_WITH_COUNT = 16;  // words of Results
-const CONTACT_WORDS = 9, TRIANGLE_WORDS = 12, PENETRATION_WORDS = 44;
-
 export class SpherechainError extends Error {
-  constructor(message) {
-    super(message);
-    this.name = 'SpherechainError';
-  }
+  name = 'SpherechainError';
+}
+
+function refuse(why) {
+  throw new SpherechainError(why);
 }
 
 let loading = null;
+let call, bytes, words, floats;  // the module's functions, and views of all its memory
+let status, query, subject, pose, out, sentence;  // where calls pass structs
+const SENTENCE_BYTES = 256;
+const handles = new WeakMap();  // where models, bodies and filters are in memory, until they are disposed of
 
 export function load() {
-  loading ??= instantiate();
-  return loading;
+  return (loading ??= instantiate());
 }
 
 async function instantiate() {
-  const bytes = Uint8Array.from(atob(wasm), letter => letter.charCodeAt(0));
-  const { instance } = await WebAssembly.instantiate(bytes, { env: { emscripten_notify_memory_growth() {} } });
-  instance.exports._initialize?.();
-  return new Spherechain(new Native(instance.exports));
+  const source = Uint8Array.from(atob(wasm), letter => letter.charCodeAt(0));
+  const { instance } = await WebAssembly.instantiate(source, { env: { emscripten_notify_memory_growth: look } });
+  call = instance.exports;
+  look();
+  call._initialize?.();
+  [status, query, subject, pose, out, sentence] = [8, 60, 56, 40, 128, SENTENCE_BYTES].map(allocate);
+  return new Spherechain();
 }
 
-// The module's memory and functions.
-class Native {
-  #floats = null;
-  #words = null;
+function look() {
+  bytes = new Uint8Array(call.memory.buffer);
+  words = new Uint32Array(call.memory.buffer);
+  floats = new Float32Array(call.memory.buffer);
+}
 
-  constructor(exports) {
-    this.call = exports;
-    this.memory = exports.memory;
-    this.kinds = [0, 1, 2, 3, 4, 5].map(kind => this.text(exports.class_name(kind)));
-  }
+function textAt(place) {
+  return new TextDecoder().decode(bytes.slice(place, bytes.indexOf(0, place)));
+}
 
-  // Views of the whole memory, made again when it has grown.
-  get floats() {
-    if (this.#floats?.buffer !== this.memory.buffer) this.#floats = new Float32Array(this.memory.buffer);
-    return this.#floats;
-  }
-  get words() {
-    if (this.#words?.buffer !== this.memory.buffer) this.#words = new Uint32Array(this.memory.buffer);
-    return this.#words;
-  }
+function allocate(size) {
+  const place = call.malloc(Math.max(size, 8));
+  if (place === 0) refuse('out of memory');
+  return place;
+}
 
-  text(place) {
-    const bytes = new Uint8Array(this.memory.buffer);
-    return new TextDecoder().decode(bytes.slice(place, bytes.indexOf(0, place)));
+// Copies arrays into memory for the time of a call.
+function lend(arrays, use) {
+  const ends = arrays.map((end => array => (end += 8 * Math.ceil(array.byteLength / 8)))(0));
+  const first = allocate(ends.at(-1));
+  try {
+    const places = arrays.map((_, i) => first + (ends[i - 1] ?? 0));
+    arrays.forEach((array, i) => bytes.set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength), places[i]));
+    return use(places);
+  } finally {
+    call.free(first);
   }
+}
 
-  // Memory for the time of a call.
-  borrow(bytes, use) {
-    const place = this.call.allocate(Math.max(bytes, 8));
-    if (place === 0) throw this.noMemory();
-    try {
-      return use(place);
-    } finally {
-      this.call.release(place);
+// Memory that is used again in each frame: one of several rooms.
+function room(rooms, which, size) {
+  const own = (rooms[which] ??= { place: 0, size: -1 });
+  if (size <= own.size) return own.place;
+  call.free(own.place);
+  Object.assign(own, { place: 0, size: -1 });
+  return Object.assign(own, { place: allocate(size), size }).place;
+}
+
+const NOT_OPEN = 8, FIELD_BODIES = 37, BODIES = {  // what sc_codes mean with that sc_field
+  4: 'the body was made without findsSteps, or for a smaller largestOther',
+  7: 'other: another body is wanted',
+  [NOT_OPEN]: 'a body has no pose: call setPose() first; steps need two poses',
+};
+
+// Throws if the last call failed. `hasSentence`: where it wrote why.
+function check(hasSentence = false) {
+  const code = words[status / 4], field = words[status / 4 + 1];
+  if (code === 0) return;
+  const why = hasSentence ? textAt(sentence) : field === FIELD_BODIES ? BODIES[code] : '', name = textAt(call.sc_field_name(field));
+  throw new SpherechainError(why || `${name}${name && ': '}${textAt(call.sc_code_text(code))}`);
+}
+
+// Types of fields: their words; a value to fill; how it is read and written at a place in memory.
+const field = (first, read, write) => ({ words: 1, make: () => first, read, write });
+const int = field(0, place => words[place / 4] | 0, (place, value = 0, name) => {
+  if (!Number.isInteger(value)) refuse(`${name}: a whole number is wanted, not ${kindOf(value)}`);
+  words[place / 4] = value;
+});
+const float = field(0, place => floats[place / 4], (place, value = 0, name) => {
+  if (typeof value !== 'number') refuse(`${name}: a number is wanted, not ${kindOf(value)}`);
+  floats[place / 4] = value;
+});
+const flag = field(false, place => words[place / 4] !== 0, (place, value) => int.write(place, value ? 1 : 0));
+const text = field('', place => textAt(words[place / 4]));
+// Negative where it is not known.
+const measured = field(null, place => (floats[place / 4] < 0 ? null : floats[place / 4]), (place, value) => float.write(place, value ?? -1));
+const choice = (...names) => field(names[0], place => names[words[place / 4]], (place, value = names[0], name) => {
+  if (!names.includes(value)) refuse(`${name} ${kindOf(value)}: one of ${names.join(', ')} is wanted`);
+  words[place / 4] = names.indexOf(value);
+});
+const vector = (...first) => ({
+  words: first.length, make: () => Float32Array.from(first),
+  read(place, value) {
+    for (let i = 0; i < value.length; ++i) value[i] = floats[place / 4 + i];
+    return value;
+  },
+  write(place, value = first, name) {
+    if (value?.length !== first.length) refuse(`${name}: ${first.length} numbers are wanted, not ${kindOf(value)}`);
+    floats.set(value, place / 4);
+  },
+});
+const struct = fields => {
+  const names = Object.keys(fields), types = Object.values(fields);
+  return {
+    words: types.reduce((sum, type) => sum + type.words, 0),
+    make: () => Object.fromEntries(names.map((name, i) => [name, types[i].make()])),
+    read(place, value) {
+      for (let i = 0; i < names.length; place += 4 * types[i++].words) value[names[i]] = types[i].read(place, value[names[i]]);
+      return value;
+    },
+    write(place, value, what) {
+      checkKeys(value, names, what);
+      for (let i = 0; i < names.length; place += 4 * types[i++].words) types[i].write(place, value[names[i]], names[i]);
+    },
+  };
+};
+// The place of what `maker` made.
+const handle = maker => field(0, null, (place, value, name) => {
+  if (value !== undefined && !handles.has(value)) refuse(`${name}: what ${maker} made is wanted, not ${kindOf(value)}`);
+  words[place / 4] = value === undefined ? 0 : handles.get(value);
+});
+// The place of a copy, in a room of its own.
+const rooms = [];
+const copied = (sizeOf, write) => {
+  const own = rooms.push(undefined) - 1;
+  return field(0, null, (place, value, name) => {
+    const copy = value === undefined ? 0 : room(rooms, own, sizeOf(value));
+    if (value !== undefined) write(copy, value, name);
+    words[place / 4] = copy;
+  });
+};
+const copiedFloats = () => copied(value => 4 * value.length, (place, value) => floats.set(value, place / 4));
+
+const vec3 = vector(0, 0, 0), side = choice(null, 'left', 'right');
+const CLASSES = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration'], classOf = choice(...CLASSES);
+const Info = struct({
+  sphereCount: int, boneCount: int, partCount: int, morphCount: int, regionCount: int, sourceBufferCount: int, vertexCount: int,
+  triangleCount: int, ignoredPairCount: int, writer: text, settings: text, settingsSha256: text, sourceFile: text, sourceSha256: text,
+  sourceRestHash: vector(0, 0), origin: vec3, left: vec3, up: vec3, forward: vec3, height: float, metresPerUnit: float,
+});
+const Bone = struct({ name: text, inverseBind: field(null, place => columnsOf(words[place / 4])) });
+const Part = struct({ name: text, side, bone: int, parent: int, mobility: int });
+const RestSphere = struct({ center: vec3, radius: float, detectRadius: float, side, region: int, level: int });
+const Triangle = struct({ part: int, region: int, sphere: int });
+const PartContact = struct({ partA: int, partB: int, trianglePairs: int, low: vec3, high: vec3 });
+const StepContact = struct({
+  partA: int, partB: int, atStart: flag, atEnd: flag, begin: float, end: float, triangleA: int, triangleB: int, at: vec3,
+});
+const SkinPoint = struct({ position: vec3, triangle: int, weights: vec3 });
+const Measures = struct({
+  depth: float, volume: measured, contourLength: float, visible: float, touching: float, facing: float, restDistance: float,
+  thickness: measured, swallowed: measured, height: float, metre: float,
+  relation: choice('apart', 'near', 'siblings', 'joined', 'two_bodies'), isOnePiece: flag,
+});
+const Penetration = struct({
+  part: int, other: int, joint: int, kind: classOf, direction: vec3, distance: float, centre: vec3, low: vec3, high: vec3,
+  deepest: SkinPoint, deepestOther: SkinPoint, measures: Measures,
+});
+const Rule = struct({
+  version: int, touchDepth: float, touchMetres: float, touchMin: float, touchMax: float, touchTimes: float, swallowed: float,
+  atRest: float, hidden: float, shell: float, fold: float, neighbours: float, foldFacing: float, deepFold: float,
+});
+const BodyDef = struct({
+  maxTriangles: int, maxPenetrations: int, largestOther: handle('createModel()'), findsSteps: flag, allocator: int,
+});
+const Pose = struct({
+  bones: copiedFloats(), boneCount: int, boneLayout: int, boneStride: int, morphWeights: copiedFloats(),
+  morphWeightCount: int, vertices: int, vertexCount: int, vertexStride: int,
+});
+const Transform = struct({ translation: vec3, rotation: vector(0, 0, 0, 1), scale: vector(1, 1, 1) });
+const Ground = struct({ up: vector(0, 1, 0), height: float, terrain: int, user: int });
+
+let defaultRule;
+const limits = copied(() => 4 * Rule.words, (place, value) => Rule.write(place, { ...defaultRule, ...value }, 'rule'));
+const PART_WORDS = 8;  // of a bit for each part: an asset has 255 at most
+const parts = () => copied(() => 4 * PART_WORDS, (place, value, name) => {
+  words.fill(0, place / 4, place / 4 + PART_WORDS);
+  for (const part of checkList(value, name)) {
+    if (!(part >= 0 && part < 32 * PART_WORDS)) refuse(`${name}: ${kindOf(part)} is no body part`);
+    words[place / 4 + (part >> 5)] |= 1 << part % 32;
+  }
+});
+const history = copied(value => 4 * Penetration.words * checkList(value, 'previous').length, (place, value) => {
+  for (let i = 0; i < value.length; ++i) Penetration.write(place + 4 * Penetration.words * i, value[i], `previous[${i}]`);
+});
+const Query = struct({
+  scope: choice('apart', 'neighbours', 'all'), detail: choice('quick', 'full'), filter: handle('createFilter()'), ignoredParts: parts(),
+  ignoredPartsOfOther: parts(), partPairs: copied(value => 4 * value.length, (place, value) => words.set(value, place / 4)),
+  rule: limits,
+  classes: field(0, null, (place, value = [], name) => {
+    let bits = 0;
+    for (const kind of checkList(value, name)) {
+      classOf.write(place, kind, name);
+      bits |= 1 << words[place / 4];
     }
-  }
-
-  error() {
-    return new SpherechainError(this.text(this.call.failure()));
-  }
-  noMemory() {
-    return new SpherechainError('out of memory');
-  }
-  check(failed) {
-    if (failed !== 0) throw this.error();
-  }
-}
+    words[place / 4] = bits;
+  }),
+  limit: int,
+  previous: {
+    words: 2,
+    write(place, value) {
+      history.write(place, value);
+      words[place / 4 + 1] = value?.length ?? 0;
+    },
+  },
+  tolerance: float, radius: choice('detect', 'fit'), target: int,
+});
 
 class Spherechain {
-  #native;
+  version = textAt(call.version());
+  classes = Object.freeze([...CLASSES]);
 
-  constructor(native) {
-    this.#native = native;
-    this.version = native.text(native.call.version());
+  constructor() {
+    call.sc_default_rule(out);
+    this.defaultRule = defaultRule = Object.freeze(Rule.read(out, {}));
   }
 
-  open(bytes) {
-    const isBytes = bytes instanceof Uint8Array || bytes instanceof ArrayBuffer;
-    if (!isBytes) {
-      const isLater = typeof bytes?.then === 'function' || typeof bytes?.arrayBuffer === 'function';
-      throw new SpherechainError(`data: the bytes of a .sphc file are wanted, an ArrayBuffer or a Uint8Array, not ${kindOf(bytes)}` +
-        (isLater ? `: await ${bytes.arrayBuffer ? 'its arrayBuffer()' : 'it'}` : ''));
-    }
-    return new Asset(this.#native, bytes instanceof ArrayBuffer ? new Uint8Array(bytes) : bytes);
+  createModel(file, joints) {
+    const data = dataOf(file), count = joints === undefined ? 0 : checkJoints(joints), names = joints ?? [];
+    const texts = names.map(({ name }) => new TextEncoder().encode(`${name}\0`));
+    const matrices = count === 0 ? [] : joints.map(({ inverseBind }) => Float32Array.from(inverseBind));
+    return lend([data, new Uint32Array(2 * names.length), ...texts, ...matrices], ([first, table, ...places]) => {
+      names.forEach((_, i) => words.set([places[i], places[names.length + i] ?? 0], table / 4 + 2 * i));
+      words.set([first, data.length, joints ? table : 0, names.length, layoutOf(count), 0], subject / 4);
+      call.sc_create_model(status, call.sc_abi_version(), subject, out, sentence, SENTENCE_BYTES);
+      check(true);
+      return new Model(words[out / 4], joints?.length);
+    });
+  }
+
+  classify(measures, rule = {}) {
+    limits.write(out, rule);
+    Measures.write(subject, measures, 'measures');
+    return CLASSES[call.sc_classify(words[out / 4], subject)];
   }
 }
 
-class Asset {
-  #native;
-  #asset = 0;
-  #characters = new Set();
+class Model {
+  #owned = new Set();
+  #triangles = null;
 
-  constructor(native, bytes) {
-    this.#native = native;
-    const place = native.call.allocate(Math.max(bytes.length, 8));
-    if (place === 0) throw native.noMemory();
-    new Uint8Array(native.memory.buffer, place, bytes.length).set(bytes);
-    this.#asset = native.call.open_asset(place, bytes.length);
-    if (this.#asset === 0) throw native.error();
-    native.borrow(4 * 32, out => this.#describe(out));
-  }
-
-  #describe(out) {
-    const { call, words, floats } = this.#native;
-    const asset = this.#asset, at = out / 4;
-    call.describe(asset, out);
-    const [spheres, bones, parts, morphs, regions, vertices, triangles, corners, source] = words.slice(at, at + 9);
-    const vector = i => Object.freeze(Array.from(floats.subarray(at + i, at + i + 3)));
-    this.origin = vector(9);
-    this.left = vector(12);
-    this.up = vector(15);
-    this.forward = vector(18);
-    this.height = floats[at + 21];
-    this.metresPerUnit = floats[at + 22];
-    this.vertexCount = vertices;
-    this.triangleCount = triangles;
-    this.sourceFile = this.#native.text(source);
-    this.triangles = corners === 0 ? new Uint32Array(0) : words.slice(corners / 4, corners / 4 + 3 * triangles);
+  constructor(model, jointCount) {
+    handles.set(this, model);
+    const asset = call.sc_get_asset(model);
+    const read = (type, getter, ...index) => {
+      getter(out, asset, ...index);
+      return type.read(out, type.make());
+    };
     const list = (count, make) => Object.freeze(Array.from({ length: count }, (_, i) => make(i)));
-    this.regions = list(regions, i => this.#native.text(call.region_name(asset, i)));
-    this.morphs = list(morphs, i => this.#native.text(call.morph_name(asset, i)));
-    this.bones = list(bones, i => {
-      call.describe_bone(asset, i, out);
-      const rows = floats.subarray(words[at + 1] / 4);
-      return Object.freeze({ name: this.#native.text(words[at]), inverseBind: columnsOf(rows) });
-    });
-    this.parts = list(parts, i => {
-      call.describe_part(asset, i, out);
-      return Object.freeze({
-        name: this.#native.text(words[at]), side: SIDES[words[at + 1]], bone: words[at + 2] | 0, parent: words[at + 3] | 0,
-      });
-    });
-    this.spheres = list(spheres, i => {
-      call.describe_sphere(asset, i, out);
-      return Object.freeze({
-        center: vector(0), radius: floats[at + 3], detectRadius: floats[at + 4], side: SIDES[words[at + 5]],
-        region: words[at + 6], level: words[at + 7] | 0,
-      });
-    });
+    Object.assign(this, read(Info, call.sc_asset_get_info));
+    this.jointCount = jointCount ?? this.boneCount;
+    this.regions = list(this.regionCount, i => textAt(call.sc_asset_region_name(asset, i)));
+    this.morphs = list(this.morphCount, i => textAt(call.sc_asset_morph_name(asset, i)));
+    this.bones = list(this.boneCount, i => Object.freeze(read(Bone, call.sc_asset_bone, i)));
+    this.spheres = list(this.sphereCount, i => Object.freeze(read(RestSphere, call.sc_asset_sphere, i)));
+    this.parts = list(this.partCount, i => Object.freeze({ ...read(Part, call.sc_asset_part, i), joint: call.sc_get_part_joint(model, i) }));
   }
 
-  createCharacter(joints) {
-    if (this.#asset === 0) throw disposed('asset');
-    if (this.bones.length === 0) {
-      throw new SpherechainError('the asset has no bones: no palette moves it');
-    }
-    const character = joints === undefined ? this.#native.call.create_character(this.#asset, 0, 0, 0) : this.#withJoints(joints);
-    const made = new Character(this.#native, this, character, joints?.length ?? this.bones.length,
-      () => this.#characters.delete(made));
-    this.#characters.add(made);
+  get triangles() {
+    const model = handleOf(this, 'model'), indices = new Uint32Array(3 * this.triangleCount);
+    return (this.#triangles ??= lend([indices], ([place]) => {
+      call.index_triangles(model, place);
+      return words.slice(place / 4, place / 4 + indices.length);
+    }));
+  }
+
+  triangle(number) {
+    call.sc_get_triangle(out, handleOf(this, 'model'), number);
+    const found = Triangle.read(out, {});
+    return found.part < 0 ? null : found;
+  }
+
+  millimetres(length) {
+    return 1000 * length * this.metresPerUnit;
+  }
+
+  checkRest(palette) {
+    const model = handleOf(this, 'model');
+    writePose(this, palette);
+    words[sentence / 4] = 0;
+    call.sc_check_rest(status, model, pose, sentence, SENTENCE_BYTES);
+    check(true);
+  }
+
+  createBody(options = {}) {
+    const model = handleOf(this, 'model');
+    BodyDef.write(subject, options, 'options');
+    call.sc_create_body(status, model, subject, out);
+    check();
+    return this.#own(Body, words[out / 4], call.sc_destroy_body);
+  }
+
+  createFilter() {
+    const asset = call.sc_get_asset(handleOf(this, 'model')), count = call.sc_pair_words(asset), filter = allocate(8 + 8 * count);
+    words.set([filter + 8, count], filter / 4);
+    call.sc_reset_filter(status, asset, filter);
+    return this.#own(Filter, filter, call.free);
+  }
+
+  #own(Class, place, free) {
+    const made = new Class(this, () => {
+      if (this.#owned.delete(made)) free(place);
+      handles.delete(made);
+    });
+    handles.set(made, place);
+    this.#owned.add(made);
     return made;
   }
 
-  // The joints, their matrices and their names lie behind each other.
-  #withJoints(joints) {
-    const native = this.#native;
-    const floats = checkJoints(joints);
-    const names = joints.map(joint => new TextEncoder().encode(`${joint.name}\0`));
-    const matrices = 8 * joints.length, texts = matrices + 4 * floats * joints.length;
-    return native.borrow(names.reduce((sum, name) => sum + name.length, texts), place => {
-      let text = place + texts;
-      joints.forEach((joint, i) => {
-        const matrix = place + matrices + 4 * floats * i;
-        if (floats > 0) native.floats.set(joint.inverseBind, matrix / 4);
-        new Uint8Array(native.memory.buffer).set(names[i], text);
-        native.words.set([text, floats > 0 ? matrix : 0], place / 4 + 2 * i);
-        text += names[i].length;
-      });
-      return native.call.create_character(this.#asset, place, joints.length, floats === 16 ? COLUMNS_4X4 : ROWS_3X4);
-    });
-  }
-
   dispose() {
-    for (const character of [...this.#characters]) character.dispose();
-    if (this.#asset !== 0) this.#native.call.close_asset(this.#asset);
-    this.#asset = 0;
+    for (const made of [...this.#owned]) made.dispose();
+    if (handles.has(this)) call.sc_destroy_model(handles.get(this));
+    handles.delete(this);
   }
 }
 
-class Character {
-  #native;
-  #character;
-  #gone;
+class Filter {
+  constructor(model, dispose) {
+    Object.assign(this, { model, dispose });
+  }
+
+  ignorePair(a, b, isIgnored = true) {
+    this.#edit(call.sc_ignore_pair, a, b, isIgnored);
+  }
+  ignoreRegions(region, other, isIgnored = true) {
+    this.#edit(call.sc_ignore_regions, region, other, isIgnored);
+  }
+  #edit(edit, a, b, isIgnored) {
+    const filter = handleOf(this, 'filter');
+    edit(status, call.sc_get_asset(handles.get(this.model)), filter, a, b, isIgnored ? 1 : 0);
+    check();
+  }
+}
+
+const POSE_KEYS = ['morphWeights', 'place', 'vertices'];
+const findSpherePairs = (_, body, about, asked, found) => call.sc_find_sphere_pairs(status, body, asked, found);
+
+class Body {
+  #free;
+  #rooms = [];  // for vertices of a pose and of the one before, and of the posed skin
+  #turn = 0;
   #views = [];
-  #isPosed = false;
-  #scope = 'apart';
-  #has = null;  // of this pose and scope: null, 'parts', 'triangles'
-  #contacts = new Pool(newContact);
-  #triangles = { count: 0, pairs: null, segments: null };
-  #penetrations = new Pool(newPenetration);
-  #contactsWith = new Pool(newContact);
-  #penetrationsWith = new Pool(newPenetration);
+  #penetrations = listOf(Penetration);
+  #penetrationsOfOther = listOf(Penetration);
+  #below = listOf(Penetration);
+  #parts = listOf(PartContact);
+  #steps = listOf(StepContact);
+  #contacts = { parts: [], spheres: null, sphereTotal: 0, triangles: null, segments: null, triangleTotal: 0 };
+  #spherePairs = { spheres: null, pairs: null, total: 0 };
+  #bounds = { low: vec3.make(), high: vec3.make() };
 
-  constructor(native, asset, character, jointCount, gone) {
-    if (character === 0) throw native.error();
-    this.asset = asset;
-    this.jointCount = jointCount;
-    this.#native = native;
-    this.#character = character;
-    this.#gone = gone;
+  constructor(model, free) {
+    this.model = model;
+    this.#free = free;
   }
 
-  setPalette(palette, morphWeights) {
-    const character = this.#open(), n = this.jointCount, morphs = this.asset.morphs.length;
-    if (palette?.length !== 16 * n && palette?.length !== 12 * n) {
-      throw new SpherechainError(`the palette has ${palette?.length ?? 'no'} floats: ${16 * n} are wanted, 16 by columns for each ` +
-        `of ${n} joints, or ${12 * n}, 12 by rows`);
+  setPose(palette, options = {}) {
+    const body = handleOf(this, 'body'), { morphWeights, place, vertices } = options, count = 3 * this.model.vertexCount;
+    checkKeys(options, POSE_KEYS, 'setPose()');
+    let copy = 0;
+    if (vertices) {
+      if (vertices.length !== count) refuse(`vertices: ${count} floats are wanted, three for each of the source's, not ${kindOf(vertices)}`);
+      this.#turn = 1 - this.#turn;
+      copy = room(this.#rooms, this.#turn, 4 * count);
+      floats.set(vertices, copy / 4);
     }
-    if (morphWeights && morphWeights.length !== morphs) {
-      throw new SpherechainError(`${morphWeights.length} morph weights: the asset has ${morphs} morphs`);
-    }
-    this.#isPosed = false;
-    this.#has = null;
-    this.#scope = 'apart';
-    this.#native.floats.set(palette, this.#result(PALETTE) / 4);
-    if (morphWeights) this.#native.floats.set(morphWeights, this.#result(MORPHS) / 4);
-    this.#native.check(this.#native.call.set_pose(character, palette.length === 16 * n ? COLUMNS_4X4 : ROWS_3X4, morphWeights ? 1 : 0));
-    this.#isPosed = true;
+    writePose(this.model, palette, morphWeights, copy);
+    if (place !== undefined) Transform.write(subject, place, 'place');
+    call.sc_set_pose(status, body, pose, place === undefined ? 0 : subject);
+    check();
+    if (call.refuse_not_finite(body, sentence)) refuse(textAt(sentence));
   }
 
-  checkRest() {
-    this.#native.check(this.#native.call.check_rest(this.#posed()));
+  penetrations(other, asked) {
+    this.#find(call.sc_find_penetrations, other, asked);
+    return other instanceof Body ? this.#penetrationsOfOther() : this.#penetrations();
   }
 
-  refit(radius = 'detect') {
-    this.#native.check(this.#native.call.refit(this.#posed(), choice(RADII, radius, 'radius')));
-    return this.#view(SPHERES, Float32Array, 4 * this.asset.spheres.length);
+  below(ground, asked) {
+    Ground.write(subject, ground, 'ground');
+    this.#ask(call.sc_find_in_ground, subject, asked);
+    return this.#below();
   }
 
-  detect(radius = 'detect') {
-    this.#native.check(this.#native.call.detect(this.#posed(), choice(RADII, radius, 'radius')));
-    return this.#view(PAIRS, Uint32Array, 2 * this.#result(PAIR_COUNT));
-  }
-
-  contacts(scope = 'apart') {
-    choice(SCOPES, scope, 'scope');
-    if (scope !== this.#scope) this.#has = null;
-    this.#scope = scope;
-    this.#find('parts');
-    return this.#contacts.fill(this.#result(CONTACT_COUNT), this.#result(CONTACTS) / 4, CONTACT_WORDS, this.#readContact);
-  }
-
-  triangleContacts() {
-    this.#find('triangles');
-    const count = this.#result(TRIANGLE_COUNT), found = this.#triangles;
-    found.count = count;
-    found.pairs = this.#view(TRIANGLES, Uint32Array, TRIANGLE_WORDS * count);
-    found.segments = this.#view(TRIANGLES, Float32Array, TRIANGLE_WORDS * count);
+  contacts(other, asked) {
+    this.#find(call.sc_find_contacts, other, asked);
+    const found = this.#contacts, at = out / 4, triangles = words[at + 5], length = 12 * words[at + 6];
+    found.spheres = this.#view(0, Uint32Array, words[at + 2], 2 * words[at + 3]);
+    found.sphereTotal = words[at + 4];
+    found.triangles = this.#view(1, Uint32Array, triangles, length);
+    found.segments = this.#view(2, Float32Array, triangles, length);
+    found.triangleTotal = words[at + 7];
+    found.parts = this.#parts(words[at + 1]);
     return found;
   }
 
-  penetrations(quick = true) {
-    checkQuick(quick);
-    this.#find('triangles');
-    this.#native.check(this.#native.call.measure(this.#character, SCOPES[this.#scope], quick ? 1 : 0));
-    return this.#penetrations.fill(this.#result(PENETRATION_COUNT), this.#result(PENETRATIONS) / 4, PENETRATION_WORDS,
-      this.#readPenetration);
+  spherePairs(asked) {
+    const found = this.#spherePairs, at = out / 4;
+    this.#ask(findSpherePairs, 0, asked);
+    found.spheres = this.#view(3, Float32Array, words[at], 4 * words[at + 1]);
+    found.pairs = this.#view(4, Uint32Array, words[at + 2], 2 * words[at + 3]);
+    found.total = words[at + 4];
+    return found;
   }
 
-  contactsWith(other) {
-    this.#meet(other, 0);
-    return this.#contactsWith.fill(this.#result(CONTACT_WITH_COUNT), this.#result(CONTACTS_WITH) / 4, CONTACT_WORDS, this.#readContact);
+  steps(other, asked) {
+    this.#find(call.sc_find_steps, other, asked);
+    return this.#steps(words[out / 4 + 1]);
   }
 
-  penetrationsWith(other, quick = true) {
-    checkQuick(quick);
-    this.#meet(other, 1);
-    this.#native.check(this.#native.call.measure_meeting(this.#character, other.#character, quick ? 1 : 0));
-    return this.#penetrationsWith.fill(this.#result(PENETRATION_WITH_COUNT), this.#result(PENETRATIONS_WITH) / 4, PENETRATION_WORDS,
-      this.#readPenetration);
+  bounds() {
+    call.sc_get_bounds(status, handleOf(this, 'body'), out, out + 12);
+    check();
+    vec3.read(out, this.#bounds.low);
+    vec3.read(out + 12, this.#bounds.high);
+    return this.#bounds;
   }
 
   vertices() {
-    this.#native.check(this.#native.call.skin(this.#posed()));
-    return this.#view(VERTICES, Float32Array, 3 * this.#result(VERTEX_COUNT));
+    const body = handleOf(this, 'body'), count = call.count_skin_vertices(handles.get(this.model)), place = room(this.#rooms, 2, 12 * count);
+    if (call.pose_skin(body, place) === 0) refuse(BODIES[NOT_OPEN]);
+    return this.#view(5, Float32Array, place, 3 * count);
   }
 
   dispose() {
-    if (this.#character === 0) return;
-    this.#native.call.destroy_character(this.#character);
-    this.#character = 0;
-    this.#gone();
+    this.#free();
+    this.#rooms.splice(0).forEach(({ place }) => call.free(place));
   }
 
-  #open() {
-    if (this.#character === 0) throw disposed('character');
-    return this.#character;
+  // `other` is another body, or the query where there is none.
+  #find(question, other, asked) {
+    if (other instanceof Body) return this.#ask(question, handleOf(other, 'other body'), asked, other.model);
+    if (asked !== undefined) refuse(`other: another body is wanted, not ${kindOf(other)}`);
+    this.#ask(question, 0, other);
   }
 
-  #posed() {
-    const character = this.#open();
-    if (!this.#isPosed) throw new SpherechainError('no palette is set: call setPalette() first');
-    return character;
+  #ask(question, about, asked, { partCount } = this.model) {
+    const body = handleOf(this, 'body');
+    if (asked?.partPairs !== undefined) asked = { ...asked, partPairs: pairBits(asked.partPairs, this.model.partCount, partCount) };
+    if (asked !== undefined) Query.write(query, asked, 'query');
+    question(status, body, about, asked === undefined ? 0 : query, out);
+    check();
   }
-
-  #result(word) {
-    return this.#native.words[this.#character / 4 + word];
-  }
-
-  #find(what) {
-    const character = this.#posed();
-    if (this.#has === what || this.#has === 'triangles') return;
-    this.#native.check(this.#native.call.find_contacts(character, SCOPES[this.#scope], what === 'triangles' ? 1 : 0));
-    this.#has = what;
-  }
-
-  #meet(other, listsTriangles) {
-    const character = this.#posed();
-    if (!(other instanceof Character) || other === this) throw new SpherechainError('other: another character is wanted');
-    this.#native.check(this.#native.call.meet(character, other.#posed(), listsTriangles));
-  }
-
-  #readContact = (contact, at) => {
-    const { floats, words } = this.#native;
-    contact.partA = words[at];
-    contact.partB = words[at + 1];
-    contact.trianglePairs = words[at + 2];
-    copy(floats, at + 3, contact.low);
-    copy(floats, at + 6, contact.high);
-  };
-
-  #readPenetration = (found, at) => {
-    const { floats, words, kinds } = this.#native;
-    found.part = words[at];
-    found.other = words[at + 1];
-    found.bone = words[at + 2] | 0;
-    found.kind = kinds[words[at + 3]];
-    copy(floats, at + 4, found.direction);
-    found.distance = floats[at + 7];
-    copy(floats, at + 8, found.centre);
-    copy(floats, at + 11, found.low);
-    copy(floats, at + 14, found.high);
-    copyPoint(floats, words, at + 17, found.deepest);
-    copyPoint(floats, words, at + 24, found.deepestOther);
-    found.depth = floats[at + 31];
-    found.volume = known(floats[at + 32]);
-    found.contourLength = floats[at + 33];
-    found.visible = floats[at + 34];
-    found.touching = floats[at + 35];
-    found.facing = floats[at + 36];
-    found.restDistance = floats[at + 37];
-    found.thickness = known(floats[at + 38]);
-    found.swallowed = known(floats[at + 39]);
-    found.height = floats[at + 40];
-    found.metre = floats[at + 41];
-    found.relation = RELATIONS[words[at + 42]];
-    found.isOnePiece = words[at + 43] === 1;
-  };
 
   // The last one where it still fits: in most frames nothing is new.
-  #view(word, Type, length) {
-    const buffer = this.#native.memory.buffer, place = this.#result(word), slot = 2 * word + (Type === Float32Array ? 1 : 0);
-    const last = this.#views[slot];
+  #view(slot, Type, place, length) {
+    const { buffer } = call.memory, last = this.#views[slot];
     if (last?.buffer === buffer && last.byteOffset === place && last.length === length) return last;
     return (this.#views[slot] = new Type(buffer, place, length));
   }
 }
 
-// Objects that are filled again each time.
-class Pool {
-  #made = [];
-  #list = [];
-  #make;
-
-  constructor(make) {
-    this.#make = make;
-  }
-
-  fill(count, first, stride, write) {
-    while (this.#made.length < count) this.#made.push(this.#make());
-    this.#list.length = count;
-    for (let i = 0; i < count; ++i) {
-      this.#list[i] = this.#made[i];
-      write(this.#made[i], first + stride * i);
-    }
-    return this.#list;
-  }
-}
-
-function newContact() {
-  return { partA: 0, partB: 0, trianglePairs: 0, low: new Float32Array(3), high: new Float32Array(3) };
-}
-
-function newPoint() {
-  return { position: new Float32Array(3), triangle: 0, weights: new Float32Array(3) };
-}
-
-function newPenetration() {
-  return {
-    part: 0, other: 0, bone: -1, kind: 'rest', depth: 0, distance: 0, direction: new Float32Array(3),
-    centre: new Float32Array(3), low: new Float32Array(3), high: new Float32Array(3), deepest: newPoint(),
-    deepestOther: newPoint(), volume: null, contourLength: 0, visible: 0, touching: 0, facing: 0, restDistance: 0,
-    thickness: null, swallowed: null, height: 0, metre: 0, relation: 'apart', isOnePiece: false,
+// A list of objects that are filled again each time, by what a call found: where they are, how many are there, how many there were.
+function listOf(type) {
+  const made = [], list = Object.assign([], { total: 0 });
+  return (total = words[out / 4 + 2]) => {
+    const first = words[out / 4], count = words[out / 4 + 1];
+    while (made.length < count) made.push(type.make());
+    list.length = count;
+    list.total = total;
+    for (let i = 0; i < count; ++i) list[i] = type.read(first + 4 * type.words * i, made[i]);
+    return list;
   };
 }
 
-// The runtime's negative measures are not known.
-function known(measure) {
-  return measure < 0 ? null : measure;
+function handleOf(object, what) {
+  if (!handles.has(object)) refuse(`the ${what} is disposed of`);
+  return handles.get(object);
 }
 
-function copy(floats, at, out) {
-  out[0] = floats[at];
-  out[1] = floats[at + 1];
-  out[2] = floats[at + 2];
-}
-
-function copyPoint(floats, words, at, out) {
-  copy(floats, at, out.position);
-  out.triangle = words[at + 3];
-  copy(floats, at + 4, out.weights);
+function writePose({ jointCount, morphCount }, palette, morphWeights, vertices = 0) {
+  const length = palette?.length, morphs = morphWeights?.length;
+  if (length !== 16 * jointCount && length !== 12 * jointCount && (palette || !vertices)) {
+    refuse(`the palette has ${length ?? 'no'} floats: ${16 * jointCount} are wanted, 16 by columns for each of ${jointCount} joints, or ` +
+      `${12 * jointCount}, 12 by rows`);
+  }
+  if (morphWeights && morphs !== morphCount) refuse(`${morphs} morph weights: the asset has ${morphCount} morphs`);
+  Pose.write(pose, {
+    bones: palette ?? undefined, boneCount: jointCount, boneLayout: layoutOf(length / jointCount), morphWeights, morphWeightCount: morphs,
+    vertices, vertexCount: 0xffffffff,
+  }, 'pose');
 }
 
 // Three rows of four to four columns of four.
-function columnsOf(rows) {
-  const out = new Float32Array(16);
-  for (let i = 0; i < 12; ++i) out[(i % 4) * 4 + Math.floor(i / 4)] = rows[i];
-  out[15] = 1;
-  return out;
+function columnsOf(place) {
+  const columns = new Float32Array(16);
+  for (let i = 0; i < 12; ++i) columns[(i % 4) * 4 + Math.floor(i / 4)] = floats[place / 4 + i];
+  columns[15] = 1;
+  return columns;
 }
 
-function checkQuick(quick) {
-  if (typeof quick !== 'boolean') throw new SpherechainError(`quick: true or false is wanted, not ${kindOf(quick)}`);
+// An sc_matrix_layout: by rows, or by columns.
+function layoutOf(floatCount) {
+  return floatCount === 12 ? 1 : 3;
+}
+
+function checkKeys(object, keys, what) {
+  if (typeof object !== 'object' || object === null) refuse(`${what}: an object is wanted, not ${kindOf(object)}`);
+  for (const key in object) if (!keys.includes(key)) refuse(`${what}: "${key}" is none of ${keys.join(', ')}`);
+}
+
+function checkList(value, name) {
+  return Array.isArray(value) ? value : refuse(`${name}: a list is wanted, not ${kindOf(value)}`);
+}
+
+// A bit for each pair of body parts; of an even number of words.
+function pairBits(pairs, count, otherCount) {
+  const bits = new Uint32Array(2 * Math.ceil(count * otherCount / 64));
+  for (const [a, b] of checkList(pairs, 'partPairs')) {
+    if (!(a >= 0 && a < count && b >= 0 && b < otherCount)) refuse(`partPairs: [${a}, ${b}] are no two body parts`);
+    const bit = a * otherCount + b;
+    bits[bit >> 5] |= 1 << bit % 32;
+  }
+  return bits;
+}
+
+function dataOf(file) {
+  if (file instanceof Uint8Array) return file;
+  if (file instanceof ArrayBuffer) return new Uint8Array(file);
+  const isLater = typeof file?.then === 'function' || typeof file?.arrayBuffer === 'function';
+  refuse(`data: the bytes of a .sphc file are wanted, an ArrayBuffer or a Uint8Array, not ${kindOf(file)}` +
+    (isLater ? `: await ${file.arrayBuffer ? 'its arrayBuffer()' : 'it'}` : ''));
 }
 
 // Floats of each joint's inverse bind matrix; 0 where none has one.
 function checkJoints(joints) {
   if (!Array.isArray(joints)) {
-    throw new SpherechainError(`joints: an array of { name, inverseBind } is wanted, not ${kindOf(joints)}; without joints ` +
-      'palettes come in the order of asset.bones');
+    refuse(`joints: an array of { name, inverseBind } is wanted, not ${kindOf(joints)}; without joints ` +
+      'palettes come in the order of model.bones');
   }
-  if (joints.length === 0) throw new SpherechainError('joints: the list is empty: is the skeleton loaded?');
+  if (joints.length === 0) refuse('joints: the list is empty: is the skeleton loaded?');
   joints.forEach((joint, i) => {
-    if (typeof joint?.name !== 'string') throw new SpherechainError(`joints[${i}]: its name is ${kindOf(joint?.name)}, a string is wanted`);
+    if (typeof joint?.name !== 'string') refuse(`joints[${i}]: its name is ${kindOf(joint?.name)}, a string is wanted`);
   });
   const matrixOf = joint => joint.inverseBind ?? null;
   const first = joints.findIndex(joint => matrixOf(joint) !== null);
   if (first < 0) return 0;
   joints.forEach((joint, i) => {
-    const matrix = matrixOf(joint), refuse = what => {
-      throw new SpherechainError(`joint "${joint.name}" (joints[${i}]): inverseBind ${what}`);
-    };
-    if (matrix === null) refuse(`is missing, but joint "${joints[first].name}" has one`);
+    const matrix = matrixOf(joint), wrong = what => refuse(`joint "${joint.name}" (joints[${i}]): inverseBind ${what}`);
+    if (matrix === null) wrong(`is missing, but joint "${joints[first].name}" has one`);
     if (![12, 16].includes(matrix.length) || !Array.prototype.every.call(matrix, Number.isFinite)) {
-      refuse(`is ${kindOf(matrix)}: 16 numbers by columns, or 12 by rows, are wanted` + (matrix.elements ? '; pass its elements' : ''));
+      wrong(`is ${kindOf(matrix)}: 16 numbers by columns, or 12 by rows, are wanted` + (matrix.elements ? '; pass its elements' : ''));
     }
     if (matrix.length !== matrixOf(joints[first]).length) {
-      refuse(`has ${matrix.length} numbers, that of joint "${joints[first].name}" ${matrixOf(joints[first]).length}`);
+      wrong(`has ${matrix.length} numbers, that of joint "${joints[first].name}" ${matrixOf(joints[first]).length}`);
     }
   });
   return matrixOf(joints[first]).length;
@@ -473,15 +568,4 @@ function kindOf(value) {
   const name = value?.constructor?.name;
   if (typeof value !== 'object' || !name) return String(value);
   return `${/^[AEIOU]/.test(name) ? 'an' : 'a'} ${name}${value.length === undefined ? '' : ` of ${value.length}`}`;
-}
-
-function choice(table, name, what) {
-  if (!Object.hasOwn(table, name)) {
-    throw new SpherechainError(`${what} "${name}": one of ${Object.keys(table).join(', ')} is wanted`);
-  }
-  return table[name];
-}
-
-function disposed(what) {
-  return new SpherechainError(`the ${what} is disposed of`);
 }

@@ -167,7 +167,8 @@ uint32_t sc_get_part_joint(const sc_model* model, uint32_t part) noexcept {
 
 sc_triangle sc_get_triangle(const sc_model* model, uint32_t triangle) noexcept {
   Surface surface;
-  if (model == nullptr || read_skin_table(view_of(model->asset), model->skin_table, surface) != SC_OK ||
+  if (model == nullptr || !has_skin(view_of(model->asset)) ||
+      read_skin_table(view_of(model->asset), model->skin_table, surface) != SC_OK ||
       triangle >= surface.place_of_source.size || surface.place_of_source[triangle] == kNoPlace) {
     return {SC_NO_PART, SC_NO_PART, SC_NO_PART};
   }
