@@ -318,7 +318,7 @@ namespace Spherechain
             CheckBits(query.IgnoredParts, Model.PartCount, Field.IgnoredParts, "a bit for each part: Model.PartSet()");
             int others = (other ?? this).Model.PartCount;
             CheckBits(query.IgnoredPartsOfOther, other == null ? 0 : others, Field.IgnoredParts, "a bit for each part: Model.PartSet()");
-            CheckBits(query.PartPairs, Model.PartCount * others, Field.Query, "a bit for each two parts: Model.PairSet()");
+            CheckBits(query.PartPairs, Model.PartCount * others, Field.PartPairs, "a bit for each two parts: Model.PairSet()");
             Enter(false);
             try
             {

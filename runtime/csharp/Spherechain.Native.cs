@@ -128,6 +128,7 @@ namespace Spherechain
         Transform = 45,
         Allocator = 46,
         Query = 47,
+        PartPairs = 48,
     }
 
     public enum Side : int  // sc_side
@@ -362,7 +363,7 @@ namespace Spherechain
         public Vec3 Translation;
         /// <summary>a quaternion: x, y, z, w; of about unit length</summary>
         public float Rotation0, Rotation1, Rotation2, Rotation3;
-        /// <summary>along its own axes; negative mirrors</summary>
+        /// <summary>along its own axes; negative mirrors. There is no default: {1, 1, 1} keeps the size</summary>
         public Vec3 Scale;
     }
 
@@ -574,7 +575,6 @@ namespace Spherechain
             public Asset* Asset;
             /// <summary>below 2^32</summary>
             public UIntPtr InstanceCount;
-            /// <summary>bones of instance 0; morph weights are not read; no vertices</summary>
             public Pose Pose;
             /// <summary>or the spheres of instance 0, of refits with the same radius</summary>
             public Sphere* Spheres;

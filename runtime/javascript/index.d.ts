@@ -164,7 +164,7 @@ export interface Query {
   /** Of two bodies and the ground: parts that meet nothing: a hand that holds the other. */
   ignoredParts?: readonly number[];
   ignoredPartsOfOther?: readonly number[];
-  /** Of contacts and penetrations: the pairs of parts that are asked about; all if left out. */
+  /** Of contacts and penetrations alone: the pairs of parts that are asked about; all if left out. */
   partPairs?: readonly (readonly [number, number])[];
   /** What is a fault. Limits that are left out are the default rule's. */
   rule?: Partial<Rule>;

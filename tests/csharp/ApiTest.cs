@@ -286,7 +286,7 @@ public static class ApiTest
             PartContact first = a.Contacts(b, full).Parts[0];
             ulong[] first_alone = model.PairSet(model, new Pair { A = first.PartA, B = first.PartB });
             Check(a.Contacts(b, new Query { PartPairs = first_alone }).Parts.Count == 1, "one pair of parts alone");
-            Refused("few pairs", Code.TooSmall, "query", "PairSet", () => a.Contacts(b, new Query { PartPairs = new ulong[0] }));
+            Refused("few pairs", Code.TooSmall, "part_pairs", "PairSet", () => a.Contacts(b, new Query { PartPairs = new ulong[0] }));
             Check(a.Penetrations(b).Count > 0 && a.Penetrations().Count > 0 && a.Penetrations(b) != a.Penetrations(),
                   "lists of their own: " + a.Penetrations(b).Count + ", " + a.Penetrations().Count);
         }

@@ -42,8 +42,9 @@ typedef struct sc_query {
    * p's; null: all parts meet. */
   const uint64_t* ignored_parts SC_ZERO;
   const uint64_t* ignored_parts_of_other SC_ZERO;
-  /* Pairs of body parts that are asked about, in questions about contacts and penetrations: bit a n + b is of part a and
-   * part b, of a body or of `other` with n parts; null: all pairs. Of one body either order of the two will do. */
+  /* Pairs of body parts that are asked about, in questions about contacts and penetrations: bit a n + b is of part a
+   * and part b of the other body, which has n parts, or of the same one. m parts of the body make (m n + 63) / 64
+   * words. Null: all pairs. Of one body either order of the two will do. */
   const uint64_t* part_pairs SC_ZERO;
   const sc_rule* rule SC_ZERO; /* null: sc_default_rule() */
   uint32_t classes SC_ZERO;    /* bit k: penetrations of class k are listed; 0: faults alone */
@@ -116,8 +117,9 @@ SPHERECHAIN_API void sc_destroy_body(sc_body* body) SC_NOEXCEPT; /* null is fine
 SPHERECHAIN_API sc_status sc_set_pose(sc_body* body, const sc_pose* pose, const sc_transform* place) SC_NOEXCEPT;
 
 /* The questions. `other` null: the body with itself; else another body, which may be of the same model. Parts of `body`
- * come first. `query` null: all zeros. SC_OK; SC_NULL, SC_BAD_VALUE (also: the query has ignored parts and
- * `other` is null, or a filter and it is not), SC_NOT_IN_ASSET, SC_UNSUPPORTED_TARGET; with SC_FIELD_BODIES: SC_ALIASED
+ * come first. `query` null: all zeros. SC_OK; SC_NULL, SC_BAD_VALUE (also: a field of the query that the question would
+ * not read: ignored parts without `other`, a filter with it, part_pairs of steps or the ground), SC_NOT_IN_ASSET,
+ * SC_UNSUPPORTED_TARGET; with SC_FIELD_BODIES: SC_ALIASED
  * (`other` is the body), SC_TOO_SMALL (the other's model is larger than the body was made for; of steps: it was not
  * made for them), SC_NOT_OPEN (a body has no pose; of steps: no pose before). After an error the result is empty. */
 SPHERECHAIN_API sc_status sc_find_penetrations(sc_body* body, const sc_body* other, const sc_query* query,

@@ -17,8 +17,10 @@ typedef struct sc_crowd_pair {
  * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
 typedef struct sc_crowd_job {
   const sc_asset* asset SC_ZERO;
-  size_t instance_count SC_ZERO;    /* below 2^32 */
-  sc_pose pose SC_ZERO;             /* bones of instance 0; morph weights are not read; no vertices */
+  size_t instance_count SC_ZERO; /* below 2^32 */
+  /* Bones of instance 0 in the asset's order, not in that of a model's joints: sc_gather_bones(). Morph weights are not
+   * read; no vertices. */
+  sc_pose pose SC_ZERO;
   const sc_sphere* spheres SC_ZERO; /* or the spheres of instance 0, of refits with the same radius */
   /* From one instance to the next: bytes (bones; a multiple of 4) or entries (spheres). 0: side by side. */
   size_t instance_stride SC_ZERO;

@@ -18,7 +18,7 @@ SC_ENUM(sc_matrix_layout){
 /* Bones: for each bone of the asset, in its order, the skinning matrix: the world matrix of the bone's joint times its
  * inverse bind matrix. It is the palette that a skinning shader gets. "World" may be any space; results come in it.
  * Vertices: the source's deformed vertices in the source's order, in any space with the asset's scale.
- * A job says which of the two it takes, and what both are good for. */
+ * With both, bones bound the search, and vertices say where the skin is. */
 typedef struct sc_pose {
   const float* bones SC_ZERO;           /* null: none */
   size_t bone_count SC_ZERO;            /* at least the asset's */
@@ -36,7 +36,7 @@ typedef struct sc_pose {
 typedef struct sc_transform {
   sc_vec3 translation;
   float rotation[4]; /* a quaternion: x, y, z, w; of about unit length */
-  sc_vec3 scale;     /* along its own axes; negative mirrors */
+  sc_vec3 scale;     /* along its own axes; negative mirrors. There is no default: {1, 1, 1} keeps the size */
 } sc_transform;
 
 #if defined(__cplusplus)

@@ -141,6 +141,7 @@ SC_ENUM(sc_field){
     SC_FIELD_TRANSFORM = 45,
     SC_FIELD_ALLOCATOR = 46,
     SC_FIELD_QUERY = 47,
+    SC_FIELD_PART_PAIRS = 48,
 };
 
 /* What every operation returns: what went wrong, and with which field. */

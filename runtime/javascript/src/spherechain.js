@@ -519,7 +519,8 @@ function checkList(value, name) {
 // A bit for each pair of body parts; of an even number of words.
 function pairBits(pairs, count, otherCount) {
   const bits = new Uint32Array(2 * Math.ceil(count * otherCount / 64));
-  for (const [a, b] of checkList(pairs, 'partPairs')) {
+  for (const pair of checkList(pairs, 'partPairs')) {
+    const [a, b] = pair?.length === 2 ? pair : refuse(`partPairs: two numbers of parts are wanted, not ${kindOf(pair)}`);
     if (!(a >= 0 && a < count && b >= 0 && b < otherCount)) refuse(`partPairs: [${a}, ${b}] are no two body parts`);
     const bit = a * otherCount + b;
     bits[bit >> 5] |= 1 << bit % 32;

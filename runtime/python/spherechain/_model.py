@@ -18,6 +18,7 @@ _SCOPES = {"apart": 0, "neighbours": 1, "all": 2}
 _DETAILS = {"quick": 0, "full": 1}
 _PENETRATIONS, _CONTACTS, _STEPS, _GROUND, _BOUNDS = range(5)  # questions of the native module
 _SIDES = ("", "left", "right")
+_TWO_BODIES = 4  # sc_relation
 
 
 class Bone(NamedTuple):
@@ -172,6 +173,8 @@ class Model:
     def below(self, up: Sequence[float], height: float, bones: Any = None, *, vertices: Any = None,
               morph_weights: Any = None, threads: int = 1, **query: Any) -> Any:
         """The body parts below the ground: the plane up . p = height, `up` of unit length. Returns Penetrations."""
+        if np.shape(up) != (3,) or not abs(np.linalg.norm(up) - 1) < 1e-3 or np.ndim(height) != 0:
+            raise ValueError("pass up, three numbers of length 1, then a height, then bones")
         ground = {"up": [float(x) for x in up], "height": float(height)}
         return self._penetrations(_GROUND, bones, vertices, morph_weights, None, threads, query, ground)
 
@@ -203,7 +206,7 @@ class Model:
     def sphere_energy(self, bones: np.ndarray, *, radius: str = "detect", threads: int = 1) -> Tuple[Any, np.ndarray]:
         """How much spheres overlap, and the gradient by the bones' matrices: a smooth loss.
 
-        The energy is the sum of (reach - distance)^2 over the pairs that pairs() reports. The reach is the sum of the two
+        The energy is the sum of (reach - distance)^2 over the pairs that sphere_pairs() reports. The reach is the sum of the two
         radii; of a rest pair, which is close at rest, that times the pair's rest_scale. The radii follow the bones, too.
 
         bones: float32 or float64 (..., bones, 3, 4). Returns the energy (...), in squared units of the pose, and the gradient
@@ -269,6 +272,10 @@ class Model:
         found: of one pose, from penetrations() of this body alone. morph_weights: float32 (morphs,), those of that pose.
         Returns float32 (penetrations, bones, 3, 4).
         """
+        if not isinstance(found, Penetrations):
+            raise TypeError(f"found is {type(found).__name__}: pass the Penetrations of one pose")
+        if (found.array["relation"] == _TWO_BODIES).any():
+            raise ValueError("found is of two bodies: its points are not all on this one")
         count = len(found)
         morphs = self._morphs(morph_weights, ())
         entries = np.ascontiguousarray(found.array).view(np.uint8)
@@ -306,6 +313,8 @@ class Model:
         """The lists of each pose as bytes, how many entries there are in all, and the batch."""
         if (bones is None) == (vertices is None):
             raise TypeError("pass bones or vertices, one of the two")
+        if other is not None and not isinstance(other, Posed):
+            raise TypeError(f"other is {type(other).__name__}: pass spherechain.Posed(model, bones)")
         if bones is not None:
             poses, batch = self._poses(bones)
         else:
@@ -335,6 +344,14 @@ class Model:
         if unknown:
             raise TypeError(f"{min(unknown)} is no option: {', '.join(Query._fields)}")
         query = Query(**given)
+        if isinstance(query.classes, str):
+            raise TypeError(f"classes is {query.classes!r}: pass a list of names")
+        if query.rule is not None and not isinstance(query.rule, Rule):
+            raise TypeError(f"rule is {query.rule!r}: pass a spherechain.Rule")
+        if other is None and ground is None and (query.ignored_parts is not None or query.ignored_parts_of_other is not None):
+            raise ValueError("ignored_parts: of two bodies and the ground alone (ignored_spheres, or part_pairs)")
+        if other is not None and query.ignored_spheres is not None:
+            raise ValueError("ignored_spheres: of one body alone (ignored_parts)")
         if query.limit < 0:
             raise ValueError(f"limit is {query.limit}: pass 0, all, or more")
         parts, others = len(self.parts), len((other.model if other else self).parts)
@@ -405,6 +422,8 @@ def _choice(name: str, value: Any, numbers: dict) -> int:
 
 
 def _place(pair: Sequence[int], parts: int, others: int) -> int:
+    if len(np.shape(pair)) != 1 or len(pair) != 2 or not all(isinstance(part, (int, np.integer)) for part in pair):
+        raise TypeError(f"part_pairs has {pair!r}: pass pairs of numbers of parts")
     a, b = pair
     if not (0 <= a < parts and 0 <= b < others):
         raise ValueError(f"part_pairs has ({a}, {b}): there are {parts} parts and {others}")

@@ -79,6 +79,7 @@ constexpr std::pair<sc_field, const char*> kFieldNames[] = {
     {SC_FIELD_TRANSFORM, "transform"},
     {SC_FIELD_ALLOCATOR, "allocator"},
     {SC_FIELD_QUERY, "query"},
+    {SC_FIELD_PART_PAIRS, "part_pairs"},
 };
 
 template <typename Texts, typename Value>

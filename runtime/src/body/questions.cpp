@@ -328,7 +328,7 @@ sc_status sc_find_steps(sc_body* body, const sc_body* other, const sc_query* que
     return status;
   }
   if (query != nullptr && query->part_pairs != nullptr) {
-    return refuse(SC_BAD_VALUE, SC_FIELD_QUERY);
+    return refuse(SC_BAD_VALUE, SC_FIELD_PART_PAIRS);
   }
   if (!body->before.is_given || (other != nullptr && !other->before.is_given)) {
     return refuse(SC_NOT_OPEN, SC_FIELD_BODIES);
@@ -372,6 +372,9 @@ sc_status sc_find_in_ground(sc_body* body, const sc_ground* ground, const sc_que
   const Status status = begin(body, nullptr, found);
   if (status != SC_OK || ground == nullptr) {
     return status != SC_OK ? status : refuse(SC_NULL, SC_FIELD_FLOOR);
+  }
+  if (query != nullptr && query->part_pairs != nullptr) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_PART_PAIRS);
   }
   const sc_query of = query_of(query);
   const Span<Penetration> list = next_list(*body, of);
