@@ -108,6 +108,7 @@ test('a query says what is listed', () => {
   assert.deepEqual(structuredClone([...body.penetrations({ partPairs: [pair] })]), [faults[0]]);
   assert.equal(body.contacts({ partPairs: [pair] }).parts.length, 1);
   refuses(() => body.contacts({ partPairs: [[0, 99]] }), /partPairs: \[0, 99\]/);
+  refuses(() => body.contacts({ partPairs: [3, 7] }), /partPairs: two numbers/);
   // Everything is ignored.
   const filter = model.createFilter();
   for (let a = 0; a < model.regionCount; ++a) for (let b = 0; b <= a; ++b) filter.ignoreRegions(a, b);

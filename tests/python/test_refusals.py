@@ -112,7 +112,10 @@ class Refusals(unittest.TestCase):
         self.refuses(ValueError, "as many before", self.model.steps, self.rest, self.rest,
                      other=spherechain.Posed(self.model, self.rest))
         self.refuses(ValueError, "bones_before has 2 poses, bones 1", self.model.steps, two, self.rest)
-        self.refuses(ValueError, "floor|ground", self.model.below, (0, 3, 0), 0, self.rest)
+        self.refuses(ValueError, "of length 1", self.model.below, (0, 3, 0), 0, self.rest)
+        self.refuses(TypeError, "other is tuple: pass spherechain.Posed", self.model.contacts, self.rest, other=(1, 2))
+        self.refuses(TypeError, "part_pairs has 3", self.model.contacts, self.rest, part_pairs=[3, 7])
+        self.refuses(TypeError, "pass a list of names", self.model.penetrations, self.rest, classes="touch")
         self.refuses(ValueError, "triangles has numbers", self.model.points, self.rest, [self.model.triangle_count],
                      np.ones((1, 3), np.float32))
         self.refuses(ValueError, "pass integers", self.model.points, self.rest, [0.5], np.ones((1, 3), np.float32))

@@ -630,6 +630,12 @@ TEST_CASE("a question with a wrong argument finds nothing and names the field") 
   query.classes = 1U << 31;
   body.penetrations(query);
   CHECK(body.status() == sc_status{SC_BAD_VALUE, SC_FIELD_QUERY});
+  query = {};
+  query.part_pairs = no_parts.data();
+  body.steps(query);
+  CHECK(body.status() == sc_status{SC_BAD_VALUE, SC_FIELD_PART_PAIRS});
+  body.below({{0, 1, 0}, 0, nullptr, nullptr}, query);
+  CHECK(body.status() == sc_status{SC_BAD_VALUE, SC_FIELD_PART_PAIRS});
   const Body none;
   CHECK(body.penetrations(none).count == 0);
   CHECK(body.status() == sc_status{SC_NULL, SC_FIELD_BODIES});
