@@ -264,11 +264,9 @@ test('views are the same object while nothing grows, and lists are used again', 
   assert.equal(body.penetrations(), penetrations);
   assert.equal(penetrations[0], one);
   assert.equal(body.contacts().parts, parts);
-  const opened = [];
-  while (first.length > 0 && opened.length < 500) opened.push(spherechain.createModel(bytes));  // until the memory grows
+  for (let i = 0; i < 20 && first.length > 0; ++i) model.createBody({ maxTriangles: 1 << 18 });  // until the memory grows
   assert.equal(first.length, 0);
   assert.equal(body.spherePairs().spheres.length, 4 * model.sphereCount);
-  for (const other of opened) other.dispose();
   model.dispose();
 });
 
