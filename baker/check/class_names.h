@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "depth/penetration_jobs.h"
+#include "spherechain/contacts.h"
 
 namespace spherechain::baker {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "depth/penetration_jobs.h"
+#include "spherechain/contacts.h"
 
 namespace spherechain::baker {
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "play/skin_player.h"
+#include "skin/contact_jobs.h"
 
 namespace spherechain::baker {
 

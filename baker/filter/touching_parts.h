@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "play/play.h"
-#include "skin/contact_jobs.h"
+#include "spherechain/contacts.h"
 
 namespace spherechain::baker {
 

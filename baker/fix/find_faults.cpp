@@ -35,6 +35,7 @@ void on_threads(std::size_t threads, std::size_t count, const Work& work) {
 }  // namespace
 
 FaultFinder::FaultFinder(const AnimatedAsset& animated, const TurnedClip& clip) : animated_(animated), clip_(clip) {
+  leave_out({});
   const std::size_t threads = std::clamp(std::thread::hardware_concurrency(), 1U, 16U);
   for (std::size_t t = 0; t < threads; ++t) {
     players_.emplace_back(animated.asset(), choose_target("auto"));
@@ -46,8 +47,7 @@ std::vector<Meeting> FaultFinder::look(SkinPlayer& player, double frame, const T
   const BonePose bones(animated_.asset(), clip_.pose(frame, turns).deformation);
   player.set_pose(bones.pose());
   std::vector<Meeting> out;
-  const auto is_asked = [&](std::uint32_t a, std::uint32_t b) { return !left_out_.contains({a, b}); };
-  for (const Penetration& found : player.measure_quickly(is_asked)) out.push_back({frame, found});
+  for (const Penetration& found : player.measure_quickly(&asked_)) out.push_back({frame, found});
   return out;
 }
 
@@ -60,6 +60,7 @@ double FaultFinder::volume(double frame, const Penetration& of, const Turns& tur
 
 void FaultFinder::leave_out(std::set<std::pair<std::uint32_t, std::uint32_t>> pairs) {
   left_out_ = std::move(pairs);
+  asked_ = part_pairs(animated_.asset(), [&](std::uint32_t a, std::uint32_t b) { return !left_out_.contains({a, b}); });
   seen_.clear();
   seen_between_.clear();
 }
@@ -104,13 +105,13 @@ std::vector<Meeting> FaultFinder::in_frames(const std::vector<double>& frames, c
 std::vector<std::vector<Meeting>> FaultFinder::in_poses(const std::vector<TriedPose>& poses,
                                                         const std::vector<char>& moves) {
   std::vector<std::vector<Meeting>> found(poses.size());
+  const PartPairBits asked = part_pairs(animated_.asset(), [&](std::uint32_t a, std::uint32_t b) {
+    return a != b && (moves[a] != 0 || moves[b] != 0) && !left_out_.contains({a, b});
+  });
   on_threads(players_.size(), poses.size(), [&](std::size_t t, std::size_t i) {
     const BonePose bones(animated_.asset(), clip_.pose_of(poses[i].frame, poses[i].turns).deformation);
     players_[t].set_pose(bones.pose());
-    const auto is_asked = [&](std::uint32_t a, std::uint32_t b) {
-      return a != b && (moves[a] != 0 || moves[b] != 0) && !left_out_.contains({a, b});
-    };
-    for (const Penetration& one : players_[t].measure_quickly(is_asked)) {
+    for (const Penetration& one : players_[t].measure_quickly(&asked)) {
       found[i].push_back({static_cast<double>(poses[i].frame), one});
     }
   });

@@ -57,6 +57,7 @@ class FaultFinder {
   const AnimatedAsset& animated_;
   const TurnedClip& clip_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> left_out_;
+  PartPairBits asked_;               // all but these
   std::vector<SkinPlayer> players_;  // one a thread
   std::vector<StepPlayer> steps_;
   SeenFrames seen_, seen_between_;

@@ -6,10 +6,10 @@
 #include <tuple>
 #include <vector>
 
-#include "depth/penetration_jobs.h"
 #include "fix/solve.h"
 #include "fix/turned_clip.h"
 #include "play/play.h"
+#include "spherechain/contacts.h"
 
 namespace spherechain::baker {
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "depth/penetration_jobs.h"
 #include "page/base64.h"
+#include "spherechain/contacts.h"
 
 namespace spherechain::baker {
 

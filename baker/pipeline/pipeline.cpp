@@ -121,18 +121,6 @@ Attempt<Spheres> fit_regions(const Character& character, const Regions& regions,
   return fit_spheres(character, regions, settings);
 }
 
-// The limbs whose joints' names say nothing, with commas between them.
-std::string limbs_by_shape(const Roles& roles) {
-  std::string out;
-  for (const RoleLimb& limb : roles.limbs) {
-    const bool is_by_shape = std::any_of(limb.nodes.begin(), limb.nodes.end(), [&](int node) {
-      return roles.of_node[static_cast<std::size_t>(node)].reason.find("the rig's shape") != std::string::npos;
-    });
-    if (is_by_shape) out += (out.empty() ? "" : ", ") + limb.name;
-  }
-  return out;
-}
-
 }  // namespace
 
 Attempt<Segmentation> segment_character(Character& character, const Roles& roles, const SegmentSettings& settings,
@@ -371,9 +359,11 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings, cons
   stage(out, progress, "import", [&] { out.character = import_character(input, settings.import); });
   stage(out, progress, "roles", [&] {
     out.roles = find_roles(out.character.rig, out.character.source_positions, settings.roles, settings.segment.body);
-    if (const std::string limbs = limbs_by_shape(out.roles); !limbs.empty()) {
-      add_note(input.string() + ": guessed from the skeleton's shape, for no joint's name tells: " + limbs +
-               " (name joints in \"roles\": docs/settings.md)");
+    if (const std::vector<std::string> limbs = limbs_by_shape(out.roles); !limbs.empty()) {
+      add_note(
+          fmt::format("{}: guessed from the skeleton's shape, for no joint's name tells: {} (name joints in \"roles\": "
+                      "docs/settings.md)",
+                      input.string(), fmt::join(limbs, ", ")));
     }
   });
   stage(out, progress, "fit", [&] {

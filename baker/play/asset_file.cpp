@@ -7,7 +7,7 @@
 
 #include "import/import.h"
 #include "mesh/error.h"
-#include "skin/contact_jobs.h"
+#include "skin/scene_setup.h"
 
 namespace spherechain::baker {
 
@@ -36,11 +36,7 @@ OpenAsset::OpenAsset(std::string_view bytes, const std::string& name)
     throw Error(ExitCode::kFile,
                 name + ": " + code_text(model_.status()) + ": " + model_.message() + " (bake it again)");
   }
-  table_.resize(skin_table_words(handle()));
-  if (!table_.empty()) {
-    check_runtime(prepare_skin(handle(), table_.data(), table_.size()));
-    check_runtime(read_skin_table(view(), table_.data(), surface_));
-  }
+  if (has_skin(view())) check_runtime(read_skin_table(view(), skin_table(), surface_));
   std::size_t first = 0;
   for (const RestSphere& sphere : view().spheres()) {
     first_triangles_.push_back(first);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "asset/asset_view.h"
+#include "body/model.h"
 #include "skin/skin_table.h"
 #include "spherechain/model.h"
 
@@ -30,14 +31,13 @@ class OpenAsset {
   const AssetView* operator->() const { return &view(); }
   const AssetView& view() const { return view_of(model_.asset()); }
 
-  const std::uint64_t* skin_table() const { return table_.data(); }
+  const std::uint64_t* skin_table() const { return model_.handle()->skin_table; }
   const Surface& surface() const { return surface_; }
   // A sphere's source triangles.
   Span<const std::uint32_t> triangles_of(std::size_t sphere) const;
 
  private:
   Model model_;
-  std::vector<std::uint64_t> table_;
   Surface surface_;
   std::vector<std::size_t> first_triangles_;
 };

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <chrono>
 
+#include "pairs/detect_job.h"
 #include "pairs/plain_detection.h"
+#include "refit/refit_job.h"
 
 namespace spherechain::baker {
 namespace {

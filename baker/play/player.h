@@ -6,10 +6,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "pairs/detect_job.h"
 #include "play/asset_file.h"
 #include "play/skin_player.h"
-#include "refit/refit_job.h"
 
 namespace spherechain::baker {
 

@@ -102,29 +102,16 @@ const std::vector<Penetration>& SkinPlayer::measure(const SkinPlayer* other, boo
   return found_;
 }
 
-std::vector<std::uint64_t> SkinPlayer::part_pairs(const IsAsked& is_asked) const {
-  const auto parts = static_cast<std::uint32_t>(asset_->part_count());
-  std::vector<std::uint64_t> out(std::size_t{parts} * parts / 64 + 1);
-  for (std::uint32_t a = 0; a < parts; ++a) {
-    for (std::uint32_t b = a; b < parts; ++b) {
-      const std::size_t bit = std::size_t{a} * parts + b;
-      if (is_asked(a, b)) out[bit / 64] |= std::uint64_t{1} << bit % 64;
-    }
-  }
-  return out;
-}
-
-const std::vector<Penetration>& SkinPlayer::measure_quickly(const IsAsked& is_asked) {
+const std::vector<Penetration>& SkinPlayer::measure_quickly(const PartPairBits* pairs) {
   Query asked = query(SC_DETAIL_QUICK);
-  const std::vector<std::uint64_t> pairs = is_asked ? part_pairs(is_asked) : std::vector<std::uint64_t>();
-  asked.part_pairs = is_asked ? pairs.data() : nullptr;
+  asked.part_pairs = pairs == nullptr ? nullptr : pairs->data();
   return find(nullptr, asked);
 }
 
 std::optional<Penetration> SkinPlayer::measure_parts(std::uint32_t part_a, std::uint32_t part_b) {
   Query asked = query(SC_DETAIL_FULL);
-  const std::vector<std::uint64_t> pairs =
-      part_pairs([&](std::uint32_t a, std::uint32_t b) { return std::minmax(a, b) == std::minmax(part_a, part_b); });
+  const PartPairBits pairs = part_pairs(
+      asset_, [&](std::uint32_t a, std::uint32_t b) { return std::minmax(a, b) == std::minmax(part_a, part_b); });
   asked.part_pairs = pairs.data();
   const std::vector<Penetration>& found = find(nullptr, asked);
   return found.empty() ? std::nullopt : std::optional(found[0]);

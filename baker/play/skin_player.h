@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -48,6 +47,21 @@ class SkinPose {
   std::vector<float> vertices_;
 };
 
+// Pairs of an asset's body parts, as sc_query.part_pairs has them.
+using PartPairBits = std::vector<std::uint64_t>;
+template <typename IsAsked>
+PartPairBits part_pairs(const OpenAsset& asset, const IsAsked& is_asked) {  // is_asked(a, b), a <= b
+  const auto parts = static_cast<std::uint32_t>(asset->part_count());
+  PartPairBits out(std::size_t{parts} * parts / 64 + 1);
+  for (std::uint32_t a = 0; a < parts; ++a) {
+    for (std::uint32_t b = a; b < parts; ++b) {
+      const std::size_t bit = std::size_t{a} * parts + b;
+      if (is_asked(a, b)) out[bit / 64] |= std::uint64_t{1} << bit % 64;
+    }
+  }
+  return out;
+}
+
 // A game's body with room for all that it finds. The asset must have clusters, and outlive it.
 class SkinPlayer {
  public:
@@ -67,9 +81,8 @@ class SkinPlayer {
   // and directions may follow that one's. A list holds until the next question.
   const std::vector<Penetration>& measure(bool is_next) { return measure(nullptr, is_next); }
   const std::vector<Penetration>& measure(const SkinPlayer& other, bool is_next) { return measure(&other, is_next); }
-  // The same by the quick form, as games do; of those pairs of body parts alone that `is_asked` says.
-  using IsAsked = std::function<bool(std::uint32_t part_a, std::uint32_t part_b)>;
-  const std::vector<Penetration>& measure_quickly(const IsAsked& is_asked = {});
+  // The same by the quick form, as games do; of some pairs of body parts alone, or of all.
+  const std::vector<Penetration>& measure_quickly(const PartPairBits* pairs = nullptr);
   // Two body parts alone, in full, whatever came before; nothing where they do not intersect.
   std::optional<Penetration> measure_parts(std::uint32_t part_a, std::uint32_t part_b);
 
@@ -78,7 +91,6 @@ class SkinPlayer {
   Span<const TriangleContact> triangles(const SkinPlayer* other, Scope scope);
   const std::vector<Penetration>& measure(const SkinPlayer* other, bool is_next);
   const std::vector<Penetration>& find(const SkinPlayer* other, Query query);
-  std::vector<std::uint64_t> part_pairs(const IsAsked& is_asked) const;
 
   const OpenAsset& asset_;
   Target target_;

@@ -8,6 +8,7 @@
 
 #include "play/asset_file.h"
 #include "play/skin_player.h"
+#include "step/step_job.h"
 
 namespace spherechain::baker {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "play/play.h"
-#include "step/step_job.h"
+#include "spherechain/contacts.h"
 
 namespace spherechain::baker {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "bind/body_parts.h"
-#include "depth/penetration_jobs.h"
 #include "play/play.h"
+#include "spherechain/contacts.h"
 
 namespace spherechain::baker {
 

@@ -217,7 +217,7 @@ struct RoleWriter {
     int top = find_in_middle(s, hints, body.path_of, Word::kTail);
     // What hangs on the head is hair.
     if (top >= 0 && body.head >= 0 && s.common_ancestor(top, body.head) == body.head) top = -1;
-    const bool by_shape = top < 0 && !body.paths.empty() && hints[body.paths[0].nodes[0]].reason == "the rig's shape";
+    const bool by_shape = top < 0 && !body.paths.empty() && hints[body.paths[0].nodes[0]].reason == kByShape;
     if (by_shape && body.pelvis >= 0) {
       const std::vector<bool> over_chest = at_or_above(s, body.chest);
       for (const int child : s.children[body.pelvis]) {
@@ -288,6 +288,17 @@ const char* body_kind_name(BodyKind kind) {
     default:
       return "unknown";
   }
+}
+
+std::vector<std::string> limbs_by_shape(const Roles& roles) {
+  std::vector<std::string> out;
+  for (const RoleLimb& limb : roles.limbs) {
+    const bool is_by_shape = std::any_of(limb.nodes.begin(), limb.nodes.end(), [&](int node) {
+      return roles.of_node[static_cast<std::size_t>(node)].reason.find(kByShape) != std::string::npos;
+    });
+    if (is_by_shape) out.push_back(limb.name);
+  }
+  return out;
 }
 
 Roles find_roles(const SourceRig& rig, const std::vector<Vec3>& positions, const RoleFile& file, BodyKind wanted) {

@@ -57,6 +57,9 @@ RoleFile parse_role_file(const std::string& json, const std::string& file);
 Roles find_roles(const SourceRig& rig, const std::vector<Vec3>& positions, const RoleFile& file = {},
                  BodyKind wanted = BodyKind::kUnknown);
 
+// The names of the limbs that have a node which no name tells: the rig's shape says what it is.
+std::vector<std::string> limbs_by_shape(const Roles& roles);
+
 // The position of each node in the rest pose: from its inverse bind matrix, else from its place under its parent. Where
 // the rig has pivots, these.
 std::vector<Vec3> rest_positions(const SourceRig& rig);

@@ -80,7 +80,7 @@ void add_limb(const Skeleton& s, int top, Family family, std::vector<Hint>& hint
   const bool arm = family == Family::kArm;
   const auto set = [&](int node, Word word) {
     hints[node].word = word;
-    hints[node].reason = "the rig's shape";
+    hints[node].reason = kByShape;
   };
   const std::vector<int> nodes = main_path(s, hints, top, family);
   std::vector<double> lengths;

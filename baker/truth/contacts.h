@@ -6,7 +6,7 @@
 #include "import/import.h"
 #include "motion/motion.h"
 #include "play/asset_file.h"
-#include "skin/contact_jobs.h"
+#include "spherechain/contacts.h"
 #include "spherechain/types.h"
 
 namespace spherechain::baker {

@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "depth/penetration_jobs.h"
+#include "spherechain/contacts.h"
 #include "truth/truth.h"
 
 namespace spherechain::baker {

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "pairs/detect_job.h"
 #include "play/asset_file.h"
 
 namespace spherechain::baker {

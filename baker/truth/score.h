@@ -19,7 +19,7 @@ struct Score {
   std::size_t far_pairs = 0, far_found = 0;                     // triangle pairs between parts that are far
   std::size_t reported = 0, right = 0;                          // sphere pairs; right: with a true pair, or close
   std::size_t apart_reported = 0, apart_right = 0;              // those whose skins are apart at rest
-  double missed_depth = 0;                                    // the deepest fault; mesh units
+  double missed_depth = 0;                                      // the deepest fault; mesh units
 
   std::optional<double> pair_recall() const { return share(found_pairs, true_pairs); }
   std::optional<double> far_recall() const { return share(far_found, far_pairs); }

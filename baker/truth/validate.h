@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "pairs/detect_job.h"
 #include "play/play.h"
 #include "play/player.h"
 #include "truth/contacts.h"

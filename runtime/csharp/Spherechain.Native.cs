@@ -389,7 +389,7 @@ namespace Spherechain
 #endif
         const CallingConvention Cdecl = CallingConvention.Cdecl;
 
-        public const uint AbiVersion = 11;
+        public const uint AbiVersion = 12;
         public const uint AssetAlignment = 8;
         public const uint Floor = 0xFFFFFFFFu;
         public const uint NoJoint = 0xFFFFFFFFu;

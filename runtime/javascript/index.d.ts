@@ -16,7 +16,7 @@
 // are first given. After dispose() it shows other data. Copy what you keep, and what a worker posts: `array.slice()`,
 // `structuredClone(penetrations)`. A spread (`{...penetration}`) is no copy: its arrays are filled again.
 //
-// What is refused is thrown as a SpherechainError with a sentence. After an error the module still works.
+// A SpherechainError with a sentence is thrown for each refusal. After it the module still works.
 
 /** Compiles the module: once a page, some tens of milliseconds. Every call gives the same object. Needs WebAssembly with SIMD:
  * Chromium 93, Firefox 92, Safari 16.4, Node 18, or newer. */
@@ -75,7 +75,7 @@ export interface Model {
   readonly morphCount: number;
   /** Matrices of a palette. */
   readonly jointCount: number;
-  /** Of the source. */
+  /** The source file's counts. */
   readonly vertexCount: number;
   readonly triangleCount: number;
   /** The character's own axes at rest; unit vectors, left x up = forward. */
@@ -142,7 +142,7 @@ export interface Body {
   contacts(other: Body, query?: Query): Contacts;
   /** Where the spheres are, and which overlap: a cheap alarm, with false ones. `spheres`: x, y, z, radius each; `pairs`: two indices each. */
   spherePairs(query?: Query): { spheres: Float32Array; pairs: Uint32Array; total: number };
-  /** What touches on the way from the pose before to this one. Of a body that was made with `findsSteps`. */
+  /** The body parts that touch on the way from the pose before to this one; the body must be made with `findsSteps`. */
   steps(query?: Query): Results<StepContact>;
   steps(other: Body, query?: Query): Results<StepContact>;
   /** A box that holds all of the skin. */
@@ -161,12 +161,12 @@ export interface Query {
   /** 'full': penetrations that are no faults are measured in full, too. The faults are the same. Contacts list spheres and triangles. */
   detail?: 'quick' | 'full';
   filter?: Filter;
-  /** Of two bodies and the ground: parts that meet nothing: a hand that holds the other. */
+  /** Parts that meet nothing, in questions about two bodies and the ground: a hand that holds the other. */
   ignoredParts?: readonly number[];
   ignoredPartsOfOther?: readonly number[];
-  /** Of contacts and penetrations alone: the pairs of parts that are asked about; all if left out. */
+  /** The pairs of parts that are asked about, in questions about contacts and penetrations; all if left out. */
   partPairs?: readonly (readonly [number, number])[];
-  /** What is a fault. Limits that are left out are the default rule's. */
+  /** The limits of classes. Those that are left out are the default rule's. */
   rule?: Partial<Rule>;
   /** Which penetrations are listed; none, or left out: faults. */
   classes?: readonly PenetrationClass[];
@@ -174,9 +174,9 @@ export interface Query {
   limit?: number;
   /** The answer of the frame before: directions of faults then stay steady. A list that was not overwritten yet, or a copy. */
   previous?: readonly Penetration[];
-  /** Of steps, a share of the height; 0.0001 if left out. */
+  /** How exact steps() is: a share of the height; 0.0001 if left out. */
   tolerance?: number;
-  /** Of spherePairs(): 'detect', if left out: the larger one; 'fit': the paper's. */
+  /** The radius of spherePairs(): 'detect', if left out, is the larger one; 'fit' is the paper's. */
   radius?: 'detect' | 'fit';
 }
 

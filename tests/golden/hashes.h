@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "depth/penetration_jobs.h"
+#include "spherechain/contacts.h"
 
 namespace spherechain::test {
 

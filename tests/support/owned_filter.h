@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pairs/detect_job.h"
+#include "spherechain/filter.h"
 
 namespace spherechain::test {
 

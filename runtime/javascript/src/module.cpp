@@ -57,8 +57,8 @@ bool are_finite(const float* values, std::size_t count) {
 
 EXPORT(version) const char* version() { return SC_VERSION; }
 
-// 1 where the pose that was set has a number that is not finite: such a pose has no contacts, and would look clean. The body
-// then has no pose, and `message` (256 bytes) names the number's bone, morph or vertex.
+// Takes the pose back if it has a number that is not finite: such a pose has no contacts, and would look clean. Then it
+// returns 1, and `message` (256 bytes) names the number's bone, morph or vertex.
 EXPORT(refuse_not_finite) int refuse_not_finite(sc_body* body, char* message) {
   const AssetView& asset = asset_of(*body);
   const sc_pose& pose = body->now.pose;

@@ -9,7 +9,7 @@
 namespace spherechain::python {
 namespace {
 
-// The bodies of one thread.
+// Asks one thread's bodies about one pose after another.
 class Asker {
  public:
   Asker(const LoadedAsset& asset, const SkinPoses& poses, const Asked& asked)
@@ -103,7 +103,7 @@ class Asker {
     }
   }
 
-  // With a larger body where one has no room for all triangles.
+  // Takes a larger body where this one has no room for all triangles.
   Contacts find_contacts(std::size_t i, const Query& query) {
     const auto find = [&] { return other_ ? body_->contacts(*other_, query) : body_->contacts(query); };
     Contacts found = find();

@@ -21,19 +21,20 @@ struct Asked {
   Question question;
   Query query;
   const LoadedAsset* other = nullptr;  // null: each pose with itself
-  SkinPoses others;                    // as many poses as asked about, of `other`
-  SkinPoses before, others_before;     // of steps: where they come from
+  SkinPoses others;                    // the poses of `other`, as many as are asked about
+  SkinPoses before, others_before;     // where a step comes from
   Ground ground;
 };
 
-// Entries of a pose after another's, as bytes; first[i] is where those of pose i start, the last where all end.
+// The entries of all poses, one pose after the other, as bytes: those of pose i start at first[i] and end at first[i +
+// 1].
 struct Runs {
   std::vector<std::uint8_t> bytes;
   std::vector<std::size_t> first{0};
 };
 
-// Penetrations, steps, or the two corners of a box; of contacts body parts, spheres and triangles. `totals` has of each
-// pose how many there are, where a limit lists fewer.
+// The first list has penetrations, steps, contacts of body parts, or the two corners of a box; the others have the
+// spheres and the triangles of contacts. `totals` says how many entries each pose has, also where a limit lists fewer.
 struct Answers {
   Runs lists[3];
   std::vector<std::size_t> totals;

@@ -73,7 +73,8 @@ const std::uint64_t* pairs_asked(sc_body& body, const sc_body* other, const sc_q
   return body.part_pairs;
 }
 
-// A round of many leaves the list of parts, and what it says, as the first question made it.
+// Runs a contact job of either kind into the body's lists. A round leaves the list of parts as it is: measure_in_rounds()
+// goes through it.
 template <typename Job>
 Status run_contacts(sc_body& body, const sc_query& query, bool lists_all, bool is_round, Job& job) {
   job.target = query.target;
@@ -102,7 +103,7 @@ Status run_contacts(sc_body& body, const sc_query& query, bool lists_all, bool i
   return done();
 }
 
-// A round asks about the pairs of parts that body.part_pairs says.
+// Finds the contacts that a query asks for, or in a round those of the parts in body.part_pairs.
 Status find_contacts(sc_body& body, const sc_body* other, const sc_query& query, bool lists_all, bool is_round) {
   body.contacts = {};
   body.has_contacts = false;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "depth/posed_skin.h"
-#include "skin/contact_jobs.h"
+#include "spherechain/contacts.h"
 
 namespace spherechain {
 

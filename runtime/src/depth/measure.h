@@ -2,8 +2,8 @@
 // How deep, which way out, how much, and what kind: of one body's contacts with itself, or of two bodies'.
 #pragma once
 
-#include "depth/penetration_jobs.h"
 #include "depth/sweep.h"
+#include "spherechain/contacts.h"
 
 namespace spherechain {
 

@@ -5,8 +5,8 @@
 #include "asset/asset_view.h"
 #include "asset/memory.h"
 #include "asset/status.h"
-#include "pairs/detect_job.h"
 #include "pairs/pair_bits.h"
+#include "spherechain/filter.h"
 
 namespace spherechain {
 

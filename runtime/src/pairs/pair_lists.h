@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "asset/asset_view.h"
-#include "pairs/detect_job.h"
 #include "pairs/tile.h"
+#include "spherechain/filter.h"
 
 namespace spherechain {
 

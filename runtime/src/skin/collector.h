@@ -55,8 +55,7 @@ struct ContactLists {
   bool spheres_only;
   const std::uint64_t* part_pairs = nullptr;  // a bit for each place of PartTable that counts; null: all count
 
-  template <typename Job>
-  static ContactLists of(const Job& job) {
+  static ContactLists of(const ContactJob& job) {
     return {{job.parts, job.part_capacity},
             {job.spheres, job.sphere_capacity},
             {job.triangles, job.triangle_capacity},
@@ -67,8 +66,7 @@ struct ContactLists {
 struct ContactCounts {
   std::size_t parts, spheres, triangles;
 
-  template <typename Job>
-  void copy_to(Job& job) const {
+  void copy_to(ContactJob& job) const {
     job.part_count = parts;
     job.sphere_count = spheres;
     job.triangle_count = triangles;

@@ -16,26 +16,14 @@
 
 namespace spherechain {
 
-// The skin is where the vertices put it; without vertices the job skins what it needs from the bones. With both, the
-// bones bound the search, and each vertex must be where its bone weights put it, up to rounding; else give vertices
-// alone (docs/arithmetic.md). A position that is not finite intersects nothing; matrices that are not finite may lose
-// contacts.
-//
-// Left out are triangles that share a position at rest (neighbours), triangles that intersect in the rest pose, and
-// ignored pairs.
-struct SkinContactJob {
-  const Asset* asset = nullptr;  // open, with triangles
-  Pose pose;
-  Scope scope{};
+// The part that both contact jobs have: how they are asked, and their lists.
+struct ContactJob {
   Target target{};
-  std::int32_t spheres_only = 0;              // 1: finds pairs of spheres alone, each until its first contact
-  const std::uint64_t* skin_table = nullptr;  // from prepare_skin(), of this asset
-  const Filter* filter = nullptr;             // null: the asset's ignored pairs
-  // Null, or: only these pairs of spheres, ignored or not, a <= b; a = b: within one sphere's triangles. Sorted, each
-  // once. Then scope and filter must be zero.
-  const Pair* candidates = nullptr;
-  std::size_t candidate_count = 0;
-  std::uint64_t* scratch = nullptr;  // skin_scratch_words() words
+  std::int32_t spheres_only = 0;  // 1: finds pairs of spheres alone, each until its first contact
+  // A bit for each two parts that are asked about; null: all are. Of one body with n parts it is bit
+  // a n + b - a (a + 1) / 2, a <= b; of two, bit a n + b, where b has n parts.
+  const std::uint64_t* part_pairs = nullptr;
+  std::uint64_t* scratch = nullptr;  // skin_scratch_words() words, or body_scratch_words()
   std::size_t scratch_words = 0;
   // Out. With spheres_only there are no parts and no triangles. Triangles that are not listed cost less.
   PartContact* parts = nullptr;
@@ -44,10 +32,26 @@ struct SkinContactJob {
   std::size_t sphere_capacity = 0;
   TriangleContact* triangles = nullptr;
   std::size_t triangle_capacity = 0;
-  // A bit for each two parts that are asked about; null: all are. Of one body with n parts it is bit
-  // a n + b - a (a + 1) / 2, a <= b; of two, bit a n + b, where b has n parts.
-  const std::uint64_t* part_pairs = nullptr;
   std::size_t part_count = 0, sphere_count = 0, triangle_count = 0;
+};
+
+// The skin is where the vertices put it; without vertices the job skins what it needs from the bones. With both, the
+// bones bound the search, and each vertex must be where its bone weights put it, up to rounding; else give vertices
+// alone (docs/arithmetic.md). A position that is not finite intersects nothing; matrices that are not finite may lose
+// contacts.
+//
+// Left out are triangles that share a position at rest (neighbours), triangles that intersect in the rest pose, and
+// ignored pairs.
+struct SkinContactJob : ContactJob {
+  const Asset* asset = nullptr;  // open, with triangles
+  Pose pose;
+  Scope scope{};
+  const std::uint64_t* skin_table = nullptr;  // from prepare_skin(), of this asset
+  const Filter* filter = nullptr;             // null: the asset's ignored pairs
+  // Null, or: only these pairs of spheres, ignored or not, a <= b; a = b: within one sphere's triangles. Sorted, each
+  // once. Then scope and filter must be zero.
+  const Pair* candidates = nullptr;
+  std::size_t candidate_count = 0;
 
   // SC_OK; SC_OVERFLOW: the first entries of the sorted lists are written; after another error nothing is.
   Status run() noexcept;
@@ -62,21 +66,9 @@ struct JobBody {
 };
 
 // In what it lists, `_a` and the first index are of body a, `_b` and the second of body b: nothing is swapped. Nothing
-// is left out but the parts that the bodies ignore. Fields, lists and errors are those of a SkinContactJob.
-struct BodyContactJob {
+// is left out but the parts that the bodies ignore. Errors are those of a SkinContactJob.
+struct BodyContactJob : ContactJob {
   JobBody a, b;
-  Target target{};
-  std::int32_t spheres_only = 0;
-  std::uint64_t* scratch = nullptr;  // body_scratch_words() words
-  std::size_t scratch_words = 0;
-  PartContact* parts = nullptr;
-  std::size_t part_capacity = 0;
-  Pair* spheres = nullptr;
-  std::size_t sphere_capacity = 0;
-  TriangleContact* triangles = nullptr;
-  std::size_t triangle_capacity = 0;
-  const std::uint64_t* part_pairs = nullptr;
-  std::size_t part_count = 0, sphere_count = 0, triangle_count = 0;
 
   Status run() noexcept;
 };

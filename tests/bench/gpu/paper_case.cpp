@@ -5,6 +5,8 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "pairs/detect_job.h"
+
 namespace spherechain::bench {
 namespace {
 

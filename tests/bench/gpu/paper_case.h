@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "pairs/detect_job.h"
 #include "paper_threads.h"
 #include "posed_asset.h"
+#include "spherechain/filter.h"
 #include "split_spheres.h"
 
 namespace spherechain::bench {

@@ -12,6 +12,8 @@ TEST_CASE("without names, shape gives a human and a fox the roles their names gi
     const NamedRig rig = named_rig(tree, body);
     const Roles named = roles_of(rig), unnamed = roles_of(nameless(rig));
     CHECK(unnamed.kind == named.kind);
+    CHECK(limbs_by_shape(named).empty());
+    CHECK(limbs_by_shape(unnamed).size() >= 4);
     REQUIRE(unnamed.limbs.size() == named.limbs.size());
     for (std::size_t i = 0; i < named.limbs.size(); ++i) {
       CHECK(unnamed.limbs[i].name == named.limbs[i].name);

@@ -326,7 +326,7 @@ TEST_CASE("a list that is too small gets its first entries, and the status names
   job.skin_table = table.words.data();
   job.scratch = scratch.data();
   job.scratch_words = scratch.size();
-  const auto check = [&](auto list, auto SkinContactJob::*data, std::size_t SkinContactJob::*capacity, sc_field field) {
+  const auto check = [&](auto list, auto ContactJob::*data, std::size_t ContactJob::*capacity, sc_field field) {
     for (const std::size_t room : {std::size_t{1}, std::size_t{3}, list.size() - 1}) {
       auto found = list;
       found.resize(room);
