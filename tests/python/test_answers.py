@@ -88,6 +88,40 @@ class Answers(unittest.TestCase):
         part, _, sphere = self.model.triangle(0)
         self.assertTrue(part < len(self.model.parts) and sphere < self.model.sphere_count)
 
+    def test_joints_of_an_engine_come_in_its_order(self):
+        order = np.random.default_rng(5).permutation(len(self.model.bones))
+        joints = [*(tuple(self.model.bones[i]) for i in order), ("prop", None)]
+        bound = pickle.loads(pickle.dumps(spherechain.Model(DOLL, joints)))
+        self.assertEqual(bound.joints, tuple(name for name, _ in joints))
+        palette = np.concatenate([self.bones[:, order], self.bones[:, :1]], 1)
+        bound.check_rest(rest_pose(self.model)[[*order, 0]])
+        for own, other in zip(bound.penetrations(palette), self.model.penetrations(self.bones)):
+            self.assertEqual([entry.part for entry in own], [entry.part for entry in other])
+            for entry, expected in zip(own, other):
+                self.assertEqual(bound.joints[entry.joint], self.model.joints[expected.joint])
+                np.testing.assert_array_equal(entry.direction, expected.direction)
+        for part, expected in zip(bound.parts, self.model.parts):
+            self.assertEqual(bound.joints[part.joint], self.model.joints[expected.joint])
+        np.testing.assert_array_equal(bound.spheres(palette), self.model.spheres(self.bones))
+        for name in ("sphere_energy", "skin_energy"):
+            energy, gradient = getattr(bound, name)(palette)
+            expected, slopes = getattr(self.model, name)(self.bones)
+            np.testing.assert_array_equal(energy, expected)
+            np.testing.assert_array_equal(gradient[:, :-1], slopes[:, order])
+            np.testing.assert_array_equal(gradient[:, -1], 0)
+
+    def test_a_direction_of_the_frame_before_is_kept_where_it_is_nearly_as_short(self):
+        pose = self.bones[20]
+        found = self.model.penetrations(pose)
+        turned = found.array.copy()
+        turned["direction"] = (0, 0, 1)
+        kept = self.model.penetrations(pose, previous=spherechain.Penetrations(turned, found._names, found.total, 1))
+        self.assertTrue((kept.array["distance"] > found.array["depth"]).any())
+        np.testing.assert_array_equal(kept.array["depth"], found.array["depth"])
+        self.assertEqual(self.model.penetrations(pose, previous=found).array.tobytes(), found.array.tobytes())
+        with self.assertRaisesRegex(ValueError, "previous: of one pose"):
+            self.model.penetrations(self.bones, previous=found)
+
     def test_do_not_depend_on_threads_shape_or_strides(self):
         wide = np.zeros((4, 6, len(self.model.bones), 4, 4), np.float32)
         wide[..., :3, :] = self.bones.reshape(4, 6, -1, 3, 4)
@@ -136,6 +170,15 @@ class Answers(unittest.TestCase):
             own, other = (np.sort(found.array, order=["part", "other"]) for found in (own, other))
             np.testing.assert_array_equal(own[["part", "other", "kind"]], other[["part", "other", "kind"]])
             np.testing.assert_allclose(own["depth"], other["depth"], atol=1e-6 * self.model.height)
+
+    def test_another_body_may_come_as_vertices(self):
+        numbers = np.repeat(np.arange(self.model.triangle_count), 3)
+        corners = np.tile(np.eye(3, dtype=np.float32), (len(numbers) // 3, 1))
+        vertices = self.model.points(self.bones[:4], numbers, corners)
+        found = [self.model.contacts(self.bones[4:8], other=other) for other in (
+            spherechain.Posed(self.model, self.bones[:4]), spherechain.Posed(self.model, vertices=vertices))]
+        self.assertGreater(sum(map(len, found[0])), 10)
+        self.assertEqual(*([[entry[:2] for entry in pose] for pose in found] for found in found))
 
     def test_deepest_points_are_points_on_the_skin(self):
         for bones, contacts in zip(self.bones, self.found):

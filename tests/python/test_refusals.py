@@ -38,6 +38,13 @@ class Refusals(unittest.TestCase):
                 self.refuses(ValueError, text, spherechain.Model, Path(folder, name))
         self.refuses(ValueError, "asset: ", spherechain.Model, data[1:])
 
+    def test_joints(self):
+        names = self.model.joints
+        self.refuses(ValueError, f'doll.sphc: .*"{names[3]}"', spherechain.Model, DOLL, names[:3] + names[4:])
+        other = [(bone.name, bone.inverse_bind + (i == 3)) for i, bone in enumerate(self.model.bones)]
+        self.refuses(ValueError, f'"{names[3]}"', spherechain.Model, DOLL, other)
+        self.refuses(ValueError, "joints: another shape", spherechain.Model, DOLL, [(names[0], np.eye(2))])
+
     def test_poses(self):
         every = (self.model.spheres, self.model.sphere_pairs, self.model.contacts, self.model.penetrations,
                  self.model.bounds, self.model.sphere_energy, self.model.skin_energy)
@@ -98,24 +105,24 @@ class Refusals(unittest.TestCase):
         self.refuses(ValueError, "no morph targets", self.model.contacts, self.rest, morph_weights=vertices[0])
         self.refuses(ValueError, "scope is 'near'", self.model.contacts, self.rest, scope="near")
         self.refuses(ValueError, "classes is 'bad'", self.model.skin_energy, self.rest, classes=["bad"])
-        self.refuses(ValueError, "classes is empty", self.model.penetrations, self.rest, classes=[])
+        self.refuses(ValueError, r"classes is \[\]: pass a list", self.model.penetrations, self.rest, classes=[])
         self.refuses(ValueError, "detail is 'best'", self.model.penetrations, self.rest, detail="best")
         self.refuses(TypeError, "quick is no option: scope, detail", self.model.penetrations, self.rest, quick=True)
         self.refuses(ValueError, "limit is -1", self.model.penetrations, self.rest, limit=-1)
-        self.refuses(ValueError, r"part_pairs has \(0, 99\)", self.model.contacts, self.rest, part_pairs=[(0, 99)])
+        self.refuses(ValueError, "part_pairs has 0, 99: there are", self.model.contacts, self.rest, part_pairs=[(0, 99)])
         self.refuses(ValueError, "ignored_parts", self.model.contacts, self.rest, ignored_parts=[0])  # of one body
         self.refuses(ValueError, "touch_depth|rule", self.model.penetrations, self.rest,
                      rule=spherechain.Rule(touch_depth=np.nan))
         two = np.stack([self.rest, self.rest])
-        self.refuses(ValueError, "other has not 1 poses", self.model.contacts, self.rest,
+        self.refuses(ValueError, r"other has poses \(2,\): pass \(\)", self.model.contacts, self.rest,
                      other=spherechain.Posed(self.model, two))
-        self.refuses(ValueError, "as many before", self.model.steps, self.rest, self.rest,
+        self.refuses(ValueError, "as many bones_before", self.model.steps, self.rest, self.rest,
                      other=spherechain.Posed(self.model, self.rest))
-        self.refuses(ValueError, "bones_before has 2 poses, bones 1", self.model.steps, two, self.rest)
+        self.refuses(ValueError, r"bones_before has poses \(2,\), bones \(\): pass as many", self.model.steps, two, self.rest)
         self.refuses(ValueError, "of length 1", self.model.below, (0, 3, 0), 0, self.rest)
         self.refuses(TypeError, "other is tuple: pass spherechain.Posed", self.model.contacts, self.rest, other=(1, 2))
-        self.refuses(TypeError, "part_pairs has 3", self.model.contacts, self.rest, part_pairs=[3, 7])
-        self.refuses(TypeError, "pass a list of names", self.model.penetrations, self.rest, classes="touch")
+        self.refuses(TypeError, r"part_pairs is \[3, 7\]: pass a list of pairs", self.model.contacts, self.rest, part_pairs=[3, 7])
+        self.refuses(ValueError, "pass a list of names", self.model.penetrations, self.rest, classes="touch")
         self.refuses(ValueError, "triangles has numbers", self.model.points, self.rest, [self.model.triangle_count],
                      np.ones((1, 3), np.float32))
         self.refuses(ValueError, "pass integers", self.model.points, self.rest, [0.5], np.ones((1, 3), np.float32))
@@ -134,29 +141,37 @@ class Refusals(unittest.TestCase):
 
     def test_the_module_itself_reads_nothing_out_of_bounds(self):
         native = _native.Model(DOLL.read_bytes())
+        radius = _native.Radius.detect
         short = np.zeros((2, len(self.model.bones) - 1, 3, 4), np.float32)
         overlapping = np.lib.stride_tricks.as_strided(self.rest, (1, *self.rest.shape), (0, 4, 16, 4))
         for bones in (short, overlapping, self.rest):
-            self.refuses((ValueError, TypeError), "bones|incompatible", native.spheres, bones, 0, 1)
-            self.refuses((ValueError, TypeError), "bones|incompatible", native.sphere_energy, bones, 0, 1)
+            self.refuses((ValueError, TypeError), "bones|incompatible", native.spheres, bones, radius, 1)
+        slopes = np.zeros((1, self.model.sphere_count, 4), np.float32)
+        self.refuses(ValueError, "gradient", native.spheres_vjp, self.rest[None], slopes[:, 1:], radius, 1)
+        self.refuses(ValueError, "spheres", native.pairs, slopes[:, 1:], radius, 1)
         query = self.model._query({}, None, None)
+
+        def ask(question, poses, before=None, other=None, other_poses=None, **options):
+            return native.ask(question, (before, poses), other, (None, other_poses), {**query, **options}, 1)
+
         good = (self.rest[None], None, None)
-        for poses in ((short, None, None), (overlapping, None, None), (None, self.rest[None], None)):
-            self.refuses((ValueError, TypeError), "bones|vertices", native.ask, 0, poses, query, None, None, None, None, 1)
-        self.refuses(ValueError, "before", native.ask, 2, good, query, None, None, None, None, 1)
-        self.refuses(ValueError, "others", native.ask, 0, good, query, native, None, None, None, 1)
-        self.refuses(ValueError, "bits", native.ask, 0, good, {**query, "part_pairs": np.zeros(1, np.uint64)}, None, None,
-                     None, None, 1)
-        self.refuses(ValueError, "rule", native.ask, 0, good, {**query, "rule": [1.0]}, None, None, None, None, 1)
-        self.refuses(ValueError, "first", native.depth_gradients, np.zeros(0, np.uint8), np.array([0, 9], np.uint64),
-                     np.zeros(0, np.float32), None)
-        self.refuses(ValueError, "first", native.depth_gradients, np.zeros(0, np.uint8), np.zeros(0, np.uint64),
-                     np.zeros(0, np.float32), None)
+        for poses in ((short, None, None), (overlapping, None, None), (None, self.rest[None], None), (None, None, None)):
+            self.refuses((ValueError, TypeError), "bones|vertices", ask, 0, poses)
+        self.refuses(ValueError, "bodies", ask, 2, good)
+        self.refuses(ValueError, "before", ask, 2, (np.stack([self.rest] * 2), None, None), good)
+        self.refuses(ValueError, "others", ask, 0, good, None, native)
+        self.refuses(ValueError, "part_pairs", ask, 0, good, part_pairs=np.zeros(1, np.uint64))
+        self.refuses(ValueError, "previous", ask, 0, good, previous=np.zeros(3, np.uint8))
+        self.refuses(ValueError, "rule", ask, 0, good, rule=[1.0])
+        one, weights = np.zeros(1, np.uint32), np.zeros((1, 3), np.float32)
+        self.refuses(ValueError, "rows", native.points_vjp, 1, one + 1, one, weights, weights, None)
+        self.refuses(ValueError, "triangle", native.points_vjp, 1, one, one + 10 ** 6, weights, weights, None)
+        self.refuses(ValueError, "slopes", native.points_vjp, 1, one, one, weights, weights[:0], None)
 
     def test_types_name_all_that_the_module_has(self):
         stub = Path(spherechain.__file__).with_name("_native.pyi").read_text()
         names = {name for name in dir(_native.Model) if not name.startswith("_")}
-        self.assertEqual(set(re.findall(r"def (\w+)\(\s*self", stub)) - {"__init__"}, names)
+        self.assertEqual(set(re.findall(r"    def (\w+)\(", stub)) - {"__init__"}, names)
 
 
 if __name__ == "__main__":

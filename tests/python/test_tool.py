@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: MIT
 """bake() and check() with the tool itself, where there is one."""
 
+import json
 import os
 import shutil
+import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 from unittest import mock
 
+import numpy as np
 import spherechain
 
-from paths import DOLL_MESH
+from palettes import random_poses
+from paths import DOLL, DOLL_MESH
 
 TOOL = os.environ.get("SPHERECHAIN_TOOL") or shutil.which("spherechain")
 
@@ -37,6 +41,29 @@ class Tool(unittest.TestCase):
             self.assertEqual(result["summary"]["characters"], 1)
             self.assertFalse(result["summary"]["fails"])
             self.assertTrue(Path(folder, "report").is_dir())
+
+    def test_penetrations_are_the_faults_that_play_reports(self):
+        model = spherechain.Model(DOLL)
+        # The doll's vertices are the corners of its triangles, one after another.
+        corners = np.repeat(np.arange(model.triangle_count), 3), np.tile(np.eye(3, dtype=np.float32), (model.triangle_count, 1))
+        poses = model.points(random_poses(model, 8, 80), *corners)
+        with tempfile.TemporaryDirectory() as folder:
+            for i, pose in enumerate(poses):
+                lines = ["v %.9g %.9g %.9g" % tuple(vertex) for vertex in pose]
+                lines += ["f %d %d %d" % (3 * k + 1, 3 * k + 2, 3 * k + 3) for k in range(model.triangle_count)]
+                Path(folder, f"{i}.obj").write_text("\n".join(lines))
+            result = Path(folder, "play.json")
+            subprocess.run([TOOL, "play", DOLL, "--source", DOLL_MESH, "--poses", folder, "--frames", "9", "--json", result],
+                           check=True, capture_output=True)
+            frames = json.loads(result.read_text())["frames"][1:]  # the first is the rest pose
+        faults = [[(*entry["parts"], entry["class"], entry["depth_mm"]) for entry in frame["penetrations"]
+                   if entry["class"] in spherechain.FAULTS] for frame in frames]
+        found = [[(entry.part, entry.other, entry.kind, entry.depth_mm) for entry in of]
+                 for of in model.penetrations(vertices=poses)]
+        self.assertGreater(sum(map(len, found)), 10)
+        for own, expected in zip(map(sorted, found), map(sorted, faults)):
+            self.assertEqual([entry[:3] for entry in own], [entry[:3] for entry in expected])
+            np.testing.assert_allclose([entry[3] for entry in own], [entry[3] for entry in expected], rtol=1e-6)
 
     def test_says_what_the_tool_says(self):
         for path, settings, text, code in (("nowhere.glb", {}, "^nowhere.glb: ", 3),

@@ -22,33 +22,32 @@ PENETRATION = np.dtype([
     ("rest_distance", "f4"), ("thickness", "f4"), ("swallowed", "f4"), ("height", "f4"), ("metre", "f4"),
     ("relation", "i4"), ("is_one_piece", "i4")])
 
-#: Two triangles that intersect, as the C library has them (sc_triangle_contact), and the segment in which they cross.
-TRIANGLE_PAIR = np.dtype([
-    ("triangle_a", "u4"), ("triangle_b", "u4"), ("sphere_a", "u4"), ("sphere_b", "u4"), ("part_a", "u4"),
-    ("part_b", "u4"), ("from", "f4", 3), ("to", "f4", 3)])
-
 #: Two body parts whose skins intersect (sc_part_contact), and a box around the triangles that do.
 PART_CONTACT = np.dtype([("part_a", "u4"), ("part_b", "u4"), ("triangle_pairs", "u4"), ("low", "f4", 3), ("high", "f4", 3)])
 
 #: Two spheres whose triangles intersect; the same twice: within one.
 SPHERE_PAIR = np.dtype([("a", "u4"), ("b", "u4")])
 
+#: Two triangles that intersect (sc_triangle_contact), and the segment in which they cross.
+TRIANGLE_PAIR = np.dtype([
+    ("triangle_a", "u4"), ("triangle_b", "u4"), ("sphere_a", "u4"), ("sphere_b", "u4"), ("part_a", "u4"),
+    ("part_b", "u4"), ("from", "f4", 3), ("to", "f4", 3)])
+
 #: Two body parts that touch in a step (sc_step_contact). Times are shares of the step.
 STEP = np.dtype([("part_a", "u4"), ("part_b", "u4"), ("at_start", "i4"), ("at_end", "i4"), ("begin", "f4"), ("end", "f4"),
                  ("triangle_a", "u4"), ("triangle_b", "u4"), ("at", "f4", 3)])
 
-assert (PENETRATION.itemsize, TRIANGLE_PAIR.itemsize, PART_CONTACT.itemsize, STEP.itemsize) == (
-    _native.PENETRATION_BYTES, _native.TRIANGLE_BYTES, _native.CONTACT_BYTES, _native.STEP_BYTES)
+assert _native.SIZES == tuple(d.itemsize for d in (PENETRATION, PART_CONTACT, SPHERE_PAIR, TRIANGLE_PAIR, STEP))
 
-CLASSES = tuple(_native.class_name(kind) for kind in range(6))
+CLASSES = tuple(_native.Class.__members__)
 FAULTS = CLASSES[4:]
-_FLOOR = 0xFFFFFFFF
+_NONE = 0xFFFFFFFF  # no joint; the ground in place of a part
 
 #: The limits of classes (sc_rule), with the library's defaults. `Rule(touch_depth=0.003)`.
 Rule = NamedTuple("Rule", [(name, float) for name in (  # type: ignore[misc]
     "touch_depth", "touch_metres", "touch_min", "touch_max", "touch_times", "swallowed", "at_rest", "hidden", "shell", "fold",
     "neighbours", "fold_facing", "deep_fold")])
-Rule.__new__.__defaults__ = tuple(_native.default_rule())
+Rule.__new__.__defaults__ = tuple(_native.Model.default_rule())
 
 
 class Penetration(NamedTuple):
@@ -61,7 +60,7 @@ class Penetration(NamedTuple):
     depth_mm: float  #: the same in millimetres, by the model's metres_per_unit
     distance: float  #: `part`, moved so far in `direction`, is free of `other`
     direction: NDArray[np.float32]  #: (3,), of unit length
-    bone: Optional[int]  #: moves `part`, into Model.bones
+    joint: Optional[int]  #: moves `part`, into Model.joints
     volume: Optional[float]  #: of the one part inside the other; None where it is not known, and with detail="quick"
     visible: float  #: 0 to 1: the share of the line in which they cross that can be seen from outside
     point: NDArray[np.float32]  #: (3,): the point of `part` that is deepest in `other`
@@ -76,13 +75,34 @@ class Penetration(NamedTuple):
         return self.kind in FAULTS
 
 
+class PartContact(NamedTuple):
+    """Two body parts whose skins intersect; of one body their order says nothing."""
+
+    part_a: str
+    part_b: str
+    triangle_pairs: int
+    low: NDArray[np.float32]  #: (3,), with `high` a box around the triangles that intersect
+    high: NDArray[np.float32]
+
+
+class Step(NamedTuple):
+    """Two body parts that touch on the way from one pose to the next."""
+
+    part_a: str
+    part_b: str
+    at_start: bool  #: they intersect there
+    at_end: bool
+    begin: float  #: the first time at which they touch, a share of the step
+    end: float  #: the last time; in between they may part and meet again
+    at: NDArray[np.float32]  #: (3,): where they touch first; zero with at_start
+
+
 class _List(Sequence):
     """Entries of one pose. `array` has them as the C library does, a structured array."""
 
-    def __init__(self, array: np.ndarray, part_names: Tuple[str, ...], names_of_other: Tuple[str, ...]) -> None:
+    def __init__(self, array: np.ndarray, names: Tuple[Tuple[str, ...], Tuple[str, ...]]) -> None:
         self.array = array
-        self._part_names = part_names
-        self._names_of_other = names_of_other
+        self._names = names  # of the parts of both bodies
 
     def __len__(self) -> int:
         return len(self.array)
@@ -100,20 +120,18 @@ class Penetrations(_List):
     """The penetrations of one pose, faults first, then the deepest first. `total`: how many there are, where a limit lists
     fewer. `array`: dtype PENETRATION."""
 
-    def __init__(self, array: np.ndarray, total: int, part_names: Tuple[str, ...], names_of_other: Tuple[str, ...],
-                 mm_per_unit: float) -> None:
-        super().__init__(array, part_names, names_of_other)
+    def __init__(self, array: np.ndarray, names: Tuple, total: int, mm_per_unit: float) -> None:
+        super().__init__(array, names)
         self.total = total
         self._mm_per_unit = mm_per_unit
 
     def _entry(self, row) -> Penetration:
-        other = "ground" if row["other"] == _FLOOR else self._names_of_other[row["other"]]
         return Penetration(
-            self._part_names[row["part"]], other, CLASSES[row["kind"]], float(row["depth"]),
-            float(row["depth"]) * self._mm_per_unit, float(row["distance"]), row["direction"],
-            int(row["joint"]) if row["joint"] != _FLOOR else None, float(row["volume"]) if row["volume"] >= 0 else None,
-            float(row["visible"]), row["deepest"]["position"], row["deepest_other"]["position"], row["centre"], row["low"],
-            row["high"])
+            self._names[0][row["part"]], "ground" if row["other"] == _NONE else self._names[1][row["other"]],
+            CLASSES[row["kind"]], float(row["depth"]), float(row["depth"]) * self._mm_per_unit, float(row["distance"]),
+            row["direction"], None if row["joint"] == _NONE else int(row["joint"]),
+            float(row["volume"]) if row["volume"] >= 0 else None, float(row["visible"]), row["deepest"]["position"],
+            row["deepest_other"]["position"], row["centre"], row["low"], row["high"])
 
     @property
     def is_fault(self) -> NDArray[np.bool_]:
@@ -130,46 +148,24 @@ class Penetrations(_List):
         return f"<{self.total} penetrations{': ' if shown else ''}{shown}{' ...' if self.total > 3 else ''}>"
 
 
-class PartContact(NamedTuple):
-    """Two body parts whose skins intersect; of one body their order says nothing."""
-
-    part_a: str
-    part_b: str
-    triangle_pairs: int
-    low: NDArray[np.float32]  #: (3,), with `high` a box around the triangles that intersect
-    high: NDArray[np.float32]
-
-
 class Contacts(_List):
     """The contacts of one pose, sorted by the parts' numbers. `array`: dtype PART_CONTACT. With detail="full" `spheres`
     (dtype SPHERE_PAIR) and `triangles` (dtype TRIANGLE_PAIR) list all that intersect; else they are None."""
 
-    def __init__(self, array: np.ndarray, spheres: Optional[np.ndarray], triangles: Optional[np.ndarray],
-                 part_names: Tuple[str, ...], names_of_other: Tuple[str, ...]) -> None:
-        super().__init__(array, part_names, names_of_other)
+    def __init__(self, array: np.ndarray, names: Tuple, spheres: Optional[np.ndarray],
+                 triangles: Optional[np.ndarray]) -> None:
+        super().__init__(array, names)
         self.spheres = spheres
         self.triangles = triangles
 
     def _entry(self, row) -> PartContact:
-        return PartContact(self._part_names[row["part_a"]], self._names_of_other[row["part_b"]], int(row["triangle_pairs"]),
+        return PartContact(self._names[0][row["part_a"]], self._names[1][row["part_b"]], int(row["triangle_pairs"]),
                            row["low"], row["high"])
-
-
-class Step(NamedTuple):
-    """Two body parts that touch on the way from one pose to the next."""
-
-    part_a: str
-    part_b: str
-    at_start: bool  #: they intersect there
-    at_end: bool
-    begin: float  #: the first time at which they touch, a share of the step
-    end: float  #: the last time; in between they may part and meet again
-    at: NDArray[np.float32]  #: (3,): where they touch first; zero with at_start
 
 
 class Steps(_List):
     """The touches of one step, sorted by the parts' numbers. `array`: dtype STEP."""
 
     def _entry(self, row) -> Step:
-        return Step(self._part_names[row["part_a"]], self._names_of_other[row["part_b"]], bool(row["at_start"]),
+        return Step(self._names[0][row["part_a"]], self._names[1][row["part_b"]], bool(row["at_start"]),
                     bool(row["at_end"]), float(row["begin"]), float(row["end"]), row["at"])

@@ -1,27 +1,50 @@
 // SPDX-License-Identifier: MIT
-// Poses of a batch by several threads.
+// Poses of a batch by several threads, without the GIL.
 #pragma once
+
+#include <pybind11/pybind11.h>
 
 #include <algorithm>
 #include <atomic>
-#include <cstddef>
+#include <chrono>
 #include <exception>
 #include <system_error>
 #include <thread>
 #include <vector>
 
-#include "signals.h"
-
 namespace spherechain::python {
+
+// Python runs the handlers of signals in its main thread alone; the module sets this when it is made.
+inline unsigned long main_thread = 0;
+
+// Ctrl-C during a batch. Call it often, in the thread that Python called: every 50 ms it lets Python handle pending
+// signals, and throws what their handlers raise, as KeyboardInterrupt.
+class SignalCheck {
+ public:
+  void operator()() {
+    const Clock::time_point now = Clock::now();
+    // A thread that asks for the GIL while Python exits is ended, in the midst of C++: only the main thread asks.
+    if (now - last_ < std::chrono::milliseconds(50) || PyThread_get_thread_ident() != main_thread) {
+      return;
+    }
+    last_ = now;
+    const pybind11::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) {
+      throw pybind11::error_already_set();
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_ = Clock::now();
+};
 
 // Calls make_worker() once in each thread, and the worker that it returns with each index below `count`, in any order.
 // `threads` 0: one for each core. The first exception, a signal's among them, is thrown again when all have stopped.
 template <typename MakeWorker>
 void for_each_pose(std::size_t count, std::size_t threads, const MakeWorker& make_worker) {
-  if (threads == 0) {
-    threads = std::max(1U, std::thread::hardware_concurrency());
-  }
-  threads = std::min(threads, count);
+  const pybind11::gil_scoped_release release;
+  threads = std::min<std::size_t>(threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : threads, count);
   std::atomic<std::size_t> next{0};
   std::atomic_flag has_failed = ATOMIC_FLAG_INIT;
   std::exception_ptr failure;
@@ -49,7 +72,7 @@ void for_each_pose(std::size_t count, std::size_t threads, const MakeWorker& mak
     }
   }
   if (count > 0) {
-    run([signals = SignalCheck()]() mutable { signals.run(); });
+    run(SignalCheck());
   }
   for (std::thread& other : others) {
     other.join();

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+// The questions of a body, about each pose of a batch.
+#include <array>
+
+#include "model.h"
+#include "parallel.h"
+
+namespace spherechain::python {
+namespace {
+
+enum class Question { kPenetrations, kContacts, kSteps, kGround, kBounds };
+
+// Where the skin is in each pose: by matrices, or by vertices.
+struct SkinPoses {
+  Array<float> kept;
+  Poses<float> bones{};                                       // data null: none
+  const float *vertices = nullptr, *morph_weights = nullptr;  // null: none; pose by pose
+  std::size_t count = 0;
+};
+
+// One of the bodies that are asked about, and of steps where it comes from.
+struct Side {
+  const LoadedModel* model = nullptr;
+  SkinPoses before, now;
+};
+
+struct Asked {
+  Question question;
+  Query query;
+  Ground ground;
+  Side sides[2];  // the second without a model: each pose with itself
+};
+
+// Entries as bytes: penetrations, steps, or the corners of a box; of contacts body parts, spheres and triangles.
+struct Answer {
+  std::string lists[3];
+  std::size_t total = 0;  // how many there are, where a limit lists fewer
+
+  template <typename T>
+  void put(std::size_t list, const T* entries, std::size_t count) {
+    lists[list].assign(reinterpret_cast<const char*>(entries), count * sizeof(T));
+  }
+};
+
+// The bodies of one thread.
+class Asker {
+ public:
+  explicit Asker(const Asked& asked) : asked_(asked) {
+    bodies_[0] = take(0, 0);
+    if (asked.sides[1].model != nullptr) {
+      bodies_[1] = take(1, 0);
+    }
+  }
+  Asker(Asker&&) = default;
+  ~Asker() {
+    const bool is_kept = &other_of(0) == asked_.sides[0].model && asked_.question != Question::kSteps;
+    for (Body& body : bodies_) {
+      if (body && is_kept) {
+        asked_.sides[0].model->give_back(std::move(body));
+      }
+    }
+  }
+
+  void ask(std::size_t i, Answer& out) {
+    set_poses(i);
+    sc_body *const body = bodies_[0].handle(), *const other = bodies_[1].handle();
+    const Query& query = asked_.query;
+    sc_penetrations found{};
+    if (asked_.question == Question::kContacts) {
+      const sc_contacts contacts = find_contacts(i, query);
+      out.put(0, contacts.parts, contacts.part_count);
+      out.put(1, contacts.spheres, contacts.sphere_count);
+      out.put(2, contacts.triangles, contacts.triangle_count);
+    } else if (asked_.question == Question::kSteps) {
+      sc_steps steps{};
+      require(sc_find_steps(body, other, &query, &steps));
+      out.put(0, steps.items, steps.count);
+    } else if (asked_.question == Question::kBounds) {
+      Vec3 corners[2];
+      require(sc_get_bounds(body, &corners[0], &corners[1]));
+      out.put(0, corners, 2);
+    } else if (asked_.question == Question::kGround) {
+      require(sc_find_in_ground(body, &asked_.ground, &query, &found));
+    } else {
+      Query all = query;
+      all.detail = SC_DETAIL_FULL;
+      find_contacts(i, all);  // two parts that have more triangles than a body has room for are measured whole
+      require(sc_find_penetrations(bodies_[0].handle(), other, &query, &found));
+    }
+    if (asked_.question == Question::kGround || asked_.question == Question::kPenetrations) {
+      out.put(0, found.items, found.count);
+      out.total = found.total;
+    }
+  }
+
+ private:
+  const LoadedModel& other_of(std::size_t side) const {
+    const Side& other = asked_.sides[1 - side];
+    return *(other.model == nullptr ? asked_.sides[side] : other).model;
+  }
+
+  Body take(std::size_t side, std::size_t max_triangles) const {
+    return asked_.sides[side].model->take_body(other_of(side), asked_.question == Question::kSteps, max_triangles);
+  }
+
+  void set_poses(std::size_t i) {
+    for (std::size_t k = 0; k < 2 && bodies_[k]; ++k) {
+      const Side& side = asked_.sides[k];
+      const AssetInfo& info = side.model->info();
+      for (const SkinPoses* poses : {&side.before, &side.now}) {
+        if (i >= poses->count) {
+          continue;
+        }
+        Pose pose;
+        if (poses->vertices == nullptr) {
+          pose = pose_of(poses->bones, side.model->joint_count(), i);
+        } else {
+          pose.vertices = poses->vertices + 3 * i * info.vertex_count;
+          pose.vertex_count = info.vertex_count;
+        }
+        if (poses->morph_weights != nullptr) {
+          pose.morph_weights = poses->morph_weights + i * info.morph_count;
+          pose.morph_weight_count = info.morph_count;
+        }
+        require(bodies_[k].set_pose(pose));
+      }
+    }
+  }
+
+  // With a larger body where one has no room for all triangles.
+  sc_contacts find_contacts(std::size_t i, const Query& query) {
+    sc_contacts found{};
+    require(sc_find_contacts(bodies_[0].handle(), bodies_[1].handle(), &query, &found));
+    if (found.triangle_count < found.triangle_total) {
+      bodies_[0] = take(0, 2 * found.triangle_total);
+      set_poses(i);
+      require(sc_find_contacts(bodies_[0].handle(), bodies_[1].handle(), &query, &found));
+    }
+    return found;
+  }
+
+  const Asked& asked_;
+  Body bodies_[2];
+};
+
+// Of (bones, vertices, morph_weights), each an array or None; None: no poses.
+SkinPoses skin_poses_of(const LoadedModel& model, const py::object& given) {
+  SkinPoses out;
+  if (given.is_none()) {
+    return out;
+  }
+  const auto [bones, vertices, morph_weights] = given.cast<std::array<std::optional<Array<float>>, 3>>();
+  require(bones || vertices, "bones");
+  out.kept = bones ? *bones : *vertices;
+  out.count = length(out.kept);
+  if (bones) {
+    out.bones = poses_of(model.joint_count(), out.kept);
+  } else {
+    out.vertices = checked(out.kept, {out.count, model.info().vertex_count, 3}, "vertices");
+  }
+  out.morph_weights = morphs_of(model, morph_weights, out.count);
+  return out;
+}
+
+// Limits as sc_rule has them from the second field on.
+std::vector<float> default_rule() {
+  const Rule rule = sc_default_rule();
+  return {&rule.touch_depth, &rule.deep_fold + 1};
+}
+
+// `query` has the fields of an sc_query by their names. Both sides are (poses before or None, poses).
+py::list ask(const LoadedModel& model, int question, const py::tuple& poses, const LoadedModel* other,
+             const py::tuple& others, const py::dict& query, std::size_t threads) {
+  Asked asked{static_cast<Question>(question), {}, {}, {}};
+  const LoadedModel& second = other == nullptr ? model : *other;
+  asked.sides[0] = {&model, skin_poses_of(model, poses[0]), skin_poses_of(model, poses[1])};
+  asked.sides[1] = {other, skin_poses_of(second, others[0]), skin_poses_of(second, others[1])};
+  const std::size_t count = asked.sides[0].now.count;
+  for (const Side& side : asked.sides) {
+    require(side.model == nullptr || side.now.count == count, "others");
+    require(side.before.count == 0 || side.before.count == count, "before");
+  }
+
+  const std::size_t parts = model.info().part_count, of_other = second.info().part_count;
+  const auto words = [&](const char* name, std::size_t bits) -> const std::uint64_t* {
+    const auto given = query[name].cast<std::optional<Array<std::uint64_t>>>();
+    return given ? checked(*given, {(bits + 63) / 64}, name) : nullptr;
+  };
+  Query& q = asked.query;
+  q.scope = query["scope"].cast<Scope>();
+  q.detail = query["detail"].cast<Detail>();
+  q.classes = query["classes"].cast<std::uint32_t>();
+  q.limit = query["limit"].cast<std::size_t>();
+  q.tolerance = query["tolerance"].cast<float>();
+  q.ignored_parts = words("ignored_parts", parts);
+  q.ignored_parts_of_other = words("ignored_parts_of_other", of_other);
+  q.part_pairs = words("part_pairs", parts * of_other);
+  const auto previous = query["previous"].cast<std::optional<Array<std::uint8_t>>>();
+  if (previous) {
+    q.previous_count = length(*previous) / sizeof(Penetration);
+    q.previous =
+        reinterpret_cast<Penetration*>(checked(*previous, {q.previous_count * sizeof(Penetration)}, "previous"));
+  }
+  std::vector<std::uint64_t> ignored(sc_pair_words(&model.asset()));
+  Filter filter{ignored.data(), ignored.size()};
+  if (!query["ignored_spheres"].is_none()) {
+    require(sc_reset_filter(&model.asset(), &filter));
+    for (const auto& [a, b] : query["ignored_spheres"].cast<std::vector<std::pair<std::uint32_t, std::uint32_t>>>()) {
+      require(sc_ignore_pair(&model.asset(), &filter, a, b, 1));
+    }
+    q.filter = &filter;
+  }
+  Rule rule = sc_default_rule();
+  const auto limits = query["rule"].cast<std::vector<float>>();
+  require(limits.size() == default_rule().size(), "rule");
+  std::copy(limits.begin(), limits.end(), &rule.touch_depth);
+  q.rule = &rule;
+  const auto [x, y, z, height] = query["ground"].cast<std::array<float, 4>>();
+  asked.ground.up = {x, y, z};
+  asked.ground.height = height;
+
+  std::vector<Answer> found(count);
+  for_each_pose(count, threads,
+                [&] { return [&found, asker = Asker(asked)](std::size_t i) mutable { asker.ask(i, found[i]); }; });
+  py::list out;
+  for (const Answer& of : found) {
+    out.append(py::make_tuple(py::bytes(of.lists[0]), py::bytes(of.lists[1]), py::bytes(of.lists[2]), of.total));
+  }
+  return out;
+}
+
+// Throws with the message of sc_check_rest() for the first pose that is no rest pose.
+void check_rest(const LoadedModel& model, const Array<float>& bones) {
+  const Poses<float> poses = poses_of(model.joint_count(), bones);
+  for (std::size_t i = 0; i < poses.count; ++i) {
+    const Pose pose = pose_of(poses, model.joint_count(), i);
+    char message[512] = "";
+    if (sc_check_rest(model.model().handle(), &pose, message, sizeof message) != SC_OK) {
+      throw std::invalid_argument(message);
+    }
+  }
+}
+
+}  // namespace
+
+void define_questions(py::class_<LoadedModel>& model) {
+  model.def_static("default_rule", &default_rule).def("ask", &ask).def("check_rest", &check_rest);
+}
+
+}  // namespace spherechain::python
