@@ -131,6 +131,7 @@ class Model:
         for name, value in info.items():
             setattr(self, name, tuple(value) if isinstance(value, list) else value)
         self._part_names = tuple(part.name for part in self.parts)
+        self._plain_query = self._query({}, None, None)
         self._is_open = True
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -178,8 +179,7 @@ class Model:
         and penetrations()."""
         poses, batch = self._asset_poses(bones, _SINGLE)
         options = _choice("radius", radius, _RADII), _count("threads", threads)
-        found = self._native.pairs(self._native.spheres(poses, *options), *options)
-        return _nested([np.frombuffer(own, np.uint32).reshape(-1, 2) for own in found], batch)
+        return _nested(self._native.pairs(self._native.spheres(poses, *options), *options), batch)
 
     def penetrations(self, bones: Any = None, *, vertices: Any = None, morph_weights: Any = None,
                      other: Optional[Posed] = None, threads: int = 1, **query: Any) -> Any:
@@ -230,9 +230,8 @@ class Model:
         (..., joints, 3, 4), of the type of `bones`. float64 is for checks: slower, all pairs are tested.
         """
         poses, batch = self._asset_poses(bones, _BOTH)
-        options = _choice("radius", radius, _RADII), _count("threads", threads)
-        energy, slopes = self._native.pair_energy(self._native.spheres(poses, *options), *options)
-        return energy.reshape(batch)[()], self._by_joint(self._native.spheres_vjp(poses, slopes, *options), batch)
+        energy, gradient = self._native.sphere_energy(poses, _choice("radius", radius, _RADII), _count("threads", threads))
+        return energy.reshape(batch)[()], self._by_joint(gradient, batch)
 
     def pair_scales(self, *, radius: str = "detect") -> NDArray[np.float32]:
         """By what a pair's sum of radii is multiplied before it is compared: for a loss of your own, on a GPU say.
@@ -340,7 +339,8 @@ class Model:
             if batch_of_other != batch or (question == _STEPS and other.bones_before is None):
                 raise ValueError(f"other has poses {batch_of_other}: pass {batch}"
                                  + (", and as many bones_before" if question == _STEPS else ""))
-        native = self._query(query, other, ground)
+        is_plain = not query and other is None and ground is None
+        native = self._plain_query if is_plain else self._query(query, other, ground)
         if native["previous"] is not None and batch:
             raise ValueError("previous: of one pose alone, not of a batch")
         found = self._native.ask(question, side, None if other is None else other.model._native, other_side, native,
@@ -440,11 +440,10 @@ class Model:
         if last != shape and (other is None or last != other):
             wanted = ", ".join(str(size) for size in shape)
             raise ValueError(f"{name} has the shape {array.shape}: pass ({'' if exact else '..., '}{wanted})")
-        # Squares of what is farther would overflow, and such spheres touch nothing.
-        for is_wrong, why in ((~np.isfinite(array), ""), (np.abs(array) > _FAR, f": more than {_FAR:g}")):
-            if is_wrong.any():
-                place = tuple(int(i) for i in np.argwhere(is_wrong)[0])
-                raise ValueError(f"{name}{list(place)} is {array[place]}{why}")
+        is_wrong = ~(np.abs(array) <= _FAR)  # squares of more would overflow, and such spheres touch nothing
+        if is_wrong.any():
+            place = tuple(int(i) for i in np.argwhere(is_wrong)[0])
+            raise ValueError(f"{name}{list(place)} is {array[place]}: pass numbers up to {_FAR:g}")
         return array
 
 

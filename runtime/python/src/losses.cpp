@@ -102,20 +102,20 @@ const T* spheres_of(const LoadedModel& model, const Array<T>& array, std::size_t
   return checked(array, {count, model.info().sphere_count, 4}, name);
 }
 
-// Of each pose the pairs as bytes.
+// Of each pose an array (pairs, 2).
 py::list pairs(const LoadedModel& model, const Array<float>& spheres, Radius radius, std::size_t threads) {
   const std::size_t n = model.info().sphere_count;
   const float* const from = spheres_of(model, spheres, length(spheres), "spheres");
-  std::vector<std::string> found(length(spheres));
+  std::vector<std::vector<Pair>> found(length(spheres));
   for_each_pose(found.size(), threads, [&] {
     return [&, finder = PairFinder<float>(model, radius)](std::size_t i) mutable {
       const Span<const Pair> own = finder.find(from + 4 * n * i);
-      found[i].assign(reinterpret_cast<const char*>(own.data), own.size * sizeof(Pair));
+      found[i].assign(own.begin(), own.end());
     };
   });
   py::list out;
-  for (const std::string& own : found) {
-    out.append(py::bytes(own));
+  for (const std::vector<Pair>& own : found) {
+    out.append(Array<std::uint32_t>({own.size(), std::size_t{2}}, own.empty() ? nullptr : &own.front().a));
   }
   return out;
 }
@@ -140,25 +140,63 @@ T pair_term(const T* a, const T* b, T scale, T* gradient_a, T* gradient_b) {
   return overlap * overlap;
 }
 
-// The sum over the pairs that touch: above 0 exactly where pairs are reported, and its gradient is continuous.
+// The sum over the pairs that touch, of one thread: above 0 exactly where pairs are reported, and its gradient is
+// continuous.
+template <typename T>
+class PairEnergy {
+ public:
+  PairEnergy(const LoadedModel& model, Radius radius)
+      : scales_(model.pair_scales(radius)), n_(model.info().sphere_count), finder_(model, radius) {}
+
+  T run(const T* spheres, T* gradient) {
+    std::fill(gradient, gradient + 4 * n_, T{0});
+    double sum = 0;
+    for (const Pair& pair : finder_.find(spheres)) {
+      const std::size_t a = 4 * std::size_t{pair.a}, b = 4 * std::size_t{pair.b};
+      sum += double{pair_term(spheres + a, spheres + b, T{scales_[pair.a * n_ + pair.b]}, gradient + a, gradient + b)};
+    }
+    return static_cast<T>(sum);
+  }
+
+ private:
+  const std::vector<float>& scales_;
+  std::size_t n_;
+  PairFinder<T> finder_;
+};
+
 template <typename T>
 py::tuple pair_energy(const LoadedModel& model, const Array<T>& spheres, Radius radius, std::size_t threads) {
   const std::size_t count = length(spheres), n = model.info().sphere_count;
   const T* const from = spheres_of(model, spheres, count, "spheres");
-  const std::vector<float>& scales = model.pair_scales(radius);
   Array<T> energy = make<T>({count}), gradient = make<T>({count, n, 4});
   T *const energies = energy.mutable_data(), *const gradients = gradient.mutable_data();
   for_each_pose(count, threads, [&] {
-    return [&, finder = PairFinder<T>(model, radius)](std::size_t i) mutable {
-      const T* const own = from + 4 * n * i;
-      T* const slopes = gradients + 4 * n * i;
-      std::fill(slopes, slopes + 4 * n, T{0});
-      double sum = 0;
-      for (const Pair& pair : finder.find(own)) {
-        const std::size_t a = pair.a, b = pair.b;
-        sum += double{pair_term(own + 4 * a, own + 4 * b, T{scales[a * n + b]}, slopes + 4 * a, slopes + 4 * b)};
+    return [&, pairs = PairEnergy<T>(model, radius)](std::size_t i) mutable {
+      energies[i] = pairs.run(from + 4 * n * i, gradients + 4 * n * i);
+    };
+  });
+  return py::make_tuple(energy, gradient);
+}
+
+// The same of the spheres that the bones move, with the gradient by the bones' matrices.
+template <typename T>
+py::tuple sphere_energy(const LoadedModel& model, const Array<T>& bones, Radius radius, std::size_t threads) {
+  require_moments(model);
+  const std::size_t size = 12 * model.info().bone_count, n = model.info().sphere_count;
+  const Poses<T> poses = poses_of(model.info().bone_count, bones);
+  Array<T> energy = make<T>({poses.count}), gradient = make<T>({poses.count, model.info().bone_count, 3, 4});
+  T *const energies = energy.mutable_data(), *const gradients = gradient.mutable_data();
+  for_each_pose(poses.count, threads, [&] {
+    return [&, place = sphere_worker(model, radius, poses), pairs = PairEnergy<T>(model, radius),
+            pass = MomentPass<T>(model.view(), radius), spheres = std::vector<T>(4 * n),
+            slopes = std::vector<T>(4 * n)](std::size_t i) mutable {
+      place(i, spheres.data());
+      energies[i] = pairs.run(spheres.data(), slopes.data());
+      std::fill(gradients + size * i, gradients + size * (i + 1), T{0});
+      if (energies[i] > 0) {
+        pass.set_pose(poses.pose(i), poses.bone_stride);
+        pass.pull_back(slopes.data(), gradients + size * i);
       }
-      energies[i] = static_cast<T>(sum);
     };
   });
   return py::make_tuple(energy, gradient);
@@ -176,12 +214,9 @@ Array<T> spheres_vjp(const LoadedModel& model, const Array<T>& bones, const Arra
   T* const to = gradient.mutable_data();
   for_each_pose(poses.count, threads, [&] {
     return [&, pass = MomentPass<T>(model.view(), radius)](std::size_t i) mutable {
-      const T *const own = from + 4 * n * i, *const end = own + 4 * n;
       std::fill(to + 12 * bone_count * i, to + 12 * bone_count * (i + 1), T{0});
-      if (std::any_of(own, end, [](T slope) { return slope != 0; })) {
-        pass.set_pose(poses.pose(i), poses.bone_stride);
-        pass.pull_back(own, to + 12 * bone_count * i);
-      }
+      pass.set_pose(poses.pose(i), poses.bone_stride);
+      pass.pull_back(from + 4 * n * i, to + 12 * bone_count * i);
     };
   });
   return gradient;
@@ -328,6 +363,7 @@ void define_for(py::class_<LoadedModel>& model) {
   const auto radius = py::arg("radius"), threads = py::arg("threads"), weights = py::arg("weights");
   model.def("spheres", &spheres<T>, exact("bones"), radius, threads)
       .def("pair_energy", &pair_energy<T>, exact("spheres"), radius, threads)
+      .def("sphere_energy", &sphere_energy<T>, exact("bones"), radius, threads)
       .def("spheres_vjp", &spheres_vjp<T>, exact("bones"), exact("gradient"), radius, threads)
       .def("points", &points<T>, exact("bones"), py::arg("triangles"), weights, py::arg("morph_weights"), threads);
 }
