@@ -31,7 +31,7 @@ except ImportError:
 
 
 class Proxy:
-    """What the loss is made of, for all who compute it."""
+    """The spheres, their radii and their pairs, for all who compute the loss."""
 
     def __init__(self, model):
         count, bones = model.sphere_count, len(model.bones)

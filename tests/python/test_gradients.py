@@ -89,7 +89,7 @@ class Gradients(unittest.TestCase):
             gradients = self.model.depth_gradients(contacts)
             direction = self.rng.normal(size=bones.shape)
             expected = slope_along(distances, bones, direction, 1e-7)
-            # Of shallow contacts the points, in single precision, give the direction to few digits.
+            # The points are in single precision: where a contact is shallow, they give the direction to few digits.
             deep = contacts.array["depth"] > 0.01 * self.model.height
             if deep.any():
                 assert_near((gradients * direction).sum((1, 2, 3))[deep], expected[deep], 1e-4)

@@ -135,7 +135,7 @@ class Penetrations(_List):
 
     @property
     def is_fault(self) -> NDArray[np.bool_]:
-        """Of each: whether it is a penetration or a deep fold. (penetrations,)"""
+        """Whether each is a penetration or a deep fold: bool (penetrations,)."""
         return self.array["kind"] >= CLASSES.index(FAULTS[0])
 
     @property

@@ -23,7 +23,7 @@ _BOTH = (np.dtype(np.float32), np.dtype(np.float64))
 
 
 class Bone(NamedTuple):
-    """What moves the character. A matrix of a pose is the bone's world matrix times its inverse bind matrix."""
+    """A bone moves the skin. A matrix of a pose is the bone's world matrix times its inverse bind matrix."""
 
     name: str  #: empty: no bone, it stands for what none moves; give it the identity, or the character's own matrix
     inverse_bind: NDArray[np.float32]  #: (3, 4): from the rest pose to the bone's space
@@ -314,7 +314,7 @@ class Model:
 
     def _depth_gradients(self, entries: np.ndarray, slopes: np.ndarray, rows: np.ndarray, count: int,
                          morphs: Optional[np.ndarray]) -> NDArray[np.float32]:
-        """Of each slope * direction . (deepest_other - deepest), added up in rows: (count, bones, 3, 4)."""
+        """The gradient of slope * direction . (deepest_other - deepest), added up in rows: (count, bones, 3, 4)."""
         ends = np.stack([entries["deepest_other"], entries["deepest"]], 1).reshape(-1)
         signed = np.stack([slopes, -slopes], 1).reshape(-1, 1) * np.repeat(entries["direction"], 2, 0)
         return self._native.points_vjp(count, np.repeat(rows, 2).astype(np.uint32), np.ascontiguousarray(ends["triangle"]),
@@ -328,7 +328,7 @@ class Model:
 
     def _ask(self, question: int, poses: Tuple, other: Optional[Posed], threads: int, query: dict, before: Any = None,
              ground: Optional[list] = None) -> Tuple[list, Tuple[int, ...], Tuple]:
-        """Of each pose three lists as bytes and a total; the batch; the names of both bodies' parts."""
+        """Three lists as bytes and a total for each pose; the batch; the names of both bodies' parts."""
         if other is not None and not isinstance(other, Posed):
             raise TypeError(f"other is {type(other).__name__}: pass spherechain.Posed(model, bones)")
         side, batch = self._side("bones_before", before, *poses)

@@ -16,7 +16,7 @@ from ._model import Model
 PathLike = Union[str, "os.PathLike[str]"]
 
 _TARGET_MISSED, _LIBRARY_FAILS = 5, 6
-# What bake() hands over as an option; all else is a key of the settings (docs/settings.md).
+# bake() hands these over as options; all else is a key of the settings (docs/settings.md).
 _BAKE_OPTIONS = ("profile", "preview", "force")
 
 

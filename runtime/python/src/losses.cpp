@@ -102,7 +102,7 @@ const T* spheres_of(const LoadedModel& model, const Array<T>& array, std::size_t
   return checked(array, {count, model.info().sphere_count, 4}, name);
 }
 
-// Of each pose an array (pairs, 2).
+// An array (pairs, 2) for each pose.
 py::list pairs(const LoadedModel& model, const Array<float>& spheres, Radius radius, std::size_t threads) {
   const std::size_t n = model.info().sphere_count;
   const float* const from = spheres_of(model, spheres, length(spheres), "spheres");

@@ -92,7 +92,7 @@ struct Poses {
   const T* pose(std::size_t i) const { return data + i * pose_stride; }
 };
 
-// Of an array (poses, bones, 3, 4).
+// Takes an array (poses, bones, 3, 4).
 template <typename T>
 Poses<T> poses_of(std::size_t bone_count, const Array<T>& bones) {
   constexpr py::ssize_t kSize = sizeof(T);

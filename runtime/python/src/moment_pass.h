@@ -101,7 +101,7 @@ class MomentPass {
  private:
   static constexpr std::size_t kFigures = 12;
 
-  // Of one sphere.
+  // The terms of one sphere.
   struct Terms {
     std::uint32_t sphere;
     std::size_t bone_count;

@@ -143,7 +143,7 @@ class Asker {
   Body bodies_[2];
 };
 
-// Of (bones, vertices, morph_weights), each an array or None; None: no poses.
+// `given` is (bones, vertices, morph_weights), each an array or None; or it is None: there are no poses.
 SkinPoses skin_poses_of(const LoadedModel& model, const py::object& given) {
   SkinPoses out;
   if (given.is_none()) {
@@ -162,7 +162,7 @@ SkinPoses skin_poses_of(const LoadedModel& model, const py::object& given) {
   return out;
 }
 
-// Limits as sc_rule has them from the second field on.
+// The limits that sc_rule has from its second field on.
 std::vector<float> default_rule() {
   const Rule rule = sc_default_rule();
   return {&rule.touch_depth, &rule.deep_fold + 1};
