@@ -71,9 +71,8 @@ EXPORT(refuse_not_finite) int refuse_not_finite(sc_body* body, char* message) {
                                sc_asset_bone(&body->model->asset, b).name, joints == nullptr ? b : joints[b]);
   }
   for (std::size_t m = 0; pose.morph_weights != nullptr && is_finite && m < asset.morph_count(); ++m) {
-    is_finite =
-        std::isfinite(pose.morph_weights[m]) ||
-        sentence.wrong("the weight of morph \"%s\" is not finite", sc_asset_morph_name(&body->model->asset, m));
+    is_finite = std::isfinite(pose.morph_weights[m]) ||
+                sentence.wrong("the weight of morph \"%s\" is not finite", sc_asset_morph_name(&body->model->asset, m));
   }
   for (std::size_t v = 0; pose.vertices != nullptr && is_finite && v < asset.vertex_count(); ++v) {
     is_finite = are_finite(pose.vertices + 3 * v, 3) || sentence.wrong("vertex %zu is not finite", v);

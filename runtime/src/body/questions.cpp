@@ -73,8 +73,8 @@ const std::uint64_t* pairs_asked(sc_body& body, const sc_body* other, const sc_q
   return body.part_pairs;
 }
 
-// Runs a contact job of either kind into the body's lists. A round leaves the list of parts as it is: measure_in_rounds()
-// goes through it.
+// Runs a contact job of either kind into the body's lists. A round leaves the list of parts as it is:
+// measure_in_rounds() goes through it.
 template <typename Job>
 Status run_contacts(sc_body& body, const sc_query& query, bool lists_all, bool is_round, Job& job) {
   job.target = query.target;
