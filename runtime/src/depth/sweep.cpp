@@ -91,13 +91,13 @@ std::int32_t Sweep::find_hidden(float* const (&low)[3], float* const (&high)[3],
 }
 
 template <typename Wants, typename Visit>
-void Sweep::for_pairs(std::size_t first, const Wants& wants, const Visit& visit) const {
+void Sweep::for_pairs(std::size_t first, const Wants& wants, const Visit& visit) {
   const std::size_t a_blocks = a_.block_count, b_blocks = b_.block_count;
   // A lambda: without one the function would be a symbol of the library.
   const auto is_before = [](std::uint32_t block, std::size_t other) { return block < other; };
   const auto start =
       static_cast<std::size_t>(std::lower_bound(b_.block, b_.block + b_blocks, first, is_before) - b_.block);
-  std::int32_t near[kBlock], hides[kBlock];
+  std::int32_t near[kBlock], hidden[kBlock], hides[kBlock];
   for (std::size_t turn = 0; turn < b_blocks; ++turn) {
     const std::size_t q = (start + turn) % b_blocks, b_first = kBlock * b_.block[q];
     const std::size_t b_end = std::min(b_first + kBlock, b_.count);
@@ -106,14 +106,28 @@ void Sweep::for_pairs(std::size_t first, const Wants& wants, const Visit& visit)
         p += kBlock - 1;
         continue;
       }
-      if (near[p % kBlock] == 0 || !wants(double{a_.block_low[2][p]} - double{b_.block_high[2][q]},
-                                          double{a_.block_high[2][p]} - double{b_.block_low[2][q]})) {
+      // Asks again where a block's triangles got boxes: its own box became smaller.
+      const auto may_meet = [&] {
+        return a_.block_low[0][p] <= b_.block_high[0][q] && a_.block_high[0][p] >= b_.block_low[0][q] &&
+               a_.block_low[1][p] <= b_.block_high[1][q] && a_.block_high[1][p] >= b_.block_low[1][q] &&
+               wants(double{a_.block_low[2][p]} - double{b_.block_high[2][q]},
+                     double{a_.block_high[2][p]} - double{b_.block_low[2][q]});
+      };
+      if (near[p % kBlock] == 0 || !may_meet()) {
+        continue;
+      }
+      if (b_.make_boxes(q, vertices_.seen) && !may_meet()) {
+        continue;
+      }
+      if (a_.make_boxes(p, vertices_.seen) && !may_meet()) {
         continue;
       }
       const std::size_t a_first = kBlock * a_.block[p];
+      if (find_hidden(b_.low, b_.high, b_first, a_.block_low, a_.block_high, p, hidden) == 0) {
+        continue;
+      }
       for (std::size_t b = b_first; b < b_end; ++b) {
-        if (a_.block_low[0][p] > b_.high[0][b] || a_.block_high[0][p] < b_.low[0][b] ||
-            a_.block_low[1][p] > b_.high[1][b] || a_.block_high[1][p] < b_.low[1][b] ||
+        if (hidden[b - b_first] == 0 ||
             !wants(double{a_.block_low[2][p]} - double{b_.high[2][b]},
                    double{a_.block_high[2][p]} - double{b_.low[2][b]}) ||
             find_hidden(a_.low, a_.high, a_first, b_.low, b_.high, b, hides) == 0) {
@@ -131,6 +145,16 @@ void Sweep::for_pairs(std::size_t first, const Wants& wants, const Visit& visit)
       }
     }
   }
+}
+
+// Tells from the triangles' intervals along the way whether this pair may block it beyond `depth`.
+bool Sweep::may_block(std::uint32_t a, std::uint32_t b, double depth) const {
+  const Corners t = skins_.a.corners(a), r = skins_.b.corners(b);
+  const auto along = [&](const Double3& p) { return dot(view_.d, p); };
+  const double a0 = along(t.p[0]), a1 = along(t.p[1]), a2 = along(t.p[2]);
+  const double b0 = along(r.p[0]), b1 = along(r.p[1]), b2 = along(r.p[2]);
+  return std::max(std::max(a0, a1), a2) - std::min(std::min(b0, b1), b2) > depth &&
+         std::min(std::min(a0, a1), a2) - std::max(std::max(b0, b1), b2) <= depth + gap_;
 }
 
 // Moves the way's end on to where this pair no longer blocks it.
@@ -189,7 +213,9 @@ double Sweep::find_by_contour(const Double3& direction, const Contour& contour, 
   out = {};
   double depth = 0;
   for (std::size_t i = 0; i < contour.segments.size && depth < bound; ++i) {
-    block(contour.segments[i].a, contour.segments[i].b, depth, out);
+    if (may_block(contour.segments[i].a, contour.segments[i].b, depth)) {
+      block(contour.segments[i].a, contour.segments[i].b, depth, out);
+    }
   }
   return depth;
 }
@@ -199,7 +225,9 @@ bool Sweep::find(const Double3& direction, const Contour& contour, double bound,
   for (double before = -1; depth > before && depth < bound;) {
     before = depth;
     for (std::size_t i = 0; i < std::min(remembered_count_, kRemembered) && depth < bound; ++i) {
-      block(remembered_[i].a, remembered_[i].b, depth, out);
+      if (may_block(remembered_[i].a, remembered_[i].b, depth)) {
+        block(remembered_[i].a, remembered_[i].b, depth, out);
+      }
     }
   }
   if (depth >= bound) {

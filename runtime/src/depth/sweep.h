@@ -67,12 +67,16 @@ class Sweep {
     std::uint32_t* block = nullptr;  // their numbers, ascending
     std::size_t block_count = 0;
     float *block_low[3] = {}, *block_high[3] = {};  // their boxes, in the order of `block`
-    float *low[3] = {}, *high[3] = {};              // their triangles' boxes; the others' are not set
+    float *low[3] = {}, *high[3] = {};              // their triangles' boxes; make_boxes() sets them
+    std::uint32_t* has_boxes = nullptr;             // 1: make_boxes() has set them, in the order of `block`
 
     void take(WordMemory& memory, std::size_t capacity);
     void view_blocks(const View& view);
     void keep_blocks(const float (&least)[3], const float (&most)[3]);
-    void view(const float* const (&seen)[3]);
+    // Sets the boxes past the last. No block's triangles have boxes yet.
+    void close();
+    // Makes boxes of the triangles of `block[i]`, and of the block. Returns false if they were there.
+    bool make_boxes(std::size_t i, const float* const (&seen)[3]);
   };
   // The vertices of both sides' triangles, and their coordinates in view.
   struct Vertices {
@@ -100,6 +104,7 @@ class Sweep {
   void keep(const Room& room);
   void keep_runs(const Side& side, const Side& other, const Room& room, Boxes& out);
   void widen_blocks(const PosedSkin& skin, const TriangleRun& run, Boxes& out) const;
+  bool may_block(std::uint32_t a, std::uint32_t b, double depth) const;
   void block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) const;
   static std::int32_t find_hidden(float* const (&low)[3], float* const (&high)[3], std::size_t first,
                                   float* const (&other_low)[3], float* const (&other_high)[3], std::size_t i,
@@ -107,7 +112,7 @@ class Sweep {
   // Calls visit(a, b, block of b) for triangles whose boxes hide each other and wants(low, high) of their intervals: b
   // can meet a only after a move between low and high. Starts at that block of b; ends where visit() says false.
   template <typename Wants, typename Visit>
-  void for_pairs(std::size_t first, const Wants& wants, const Visit& visit) const;
+  void for_pairs(std::size_t first, const Wants& wants, const Visit& visit);
   void vote(const Side& side, const Double3* points, std::size_t count, bool up, double outwards, int* inside) const;
   void vote_by(const Corners& triangle, const Double3* points, std::size_t count, bool up, double handedness,
                double* nearest, int* inside) const;

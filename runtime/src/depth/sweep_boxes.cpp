@@ -24,6 +24,7 @@ void Sweep::Boxes::take(WordMemory& memory, std::size_t capacity) {
     memory.take(half[axis], blocks);
   }
   memory.take(block, blocks);
+  memory.take(has_boxes, blocks);
   memory.take(triangle, capacity);
   memory.take(corners, 3 * capacity);
 }
@@ -66,27 +67,36 @@ void Sweep::Boxes::keep_blocks(const float (&least)[3], const float (&most)[3]) 
   block_count = kept;
 }
 
-void Sweep::Boxes::view(const float* const (&seen)[3]) {
+void Sweep::Boxes::close() {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const float* const at = seen[axis];
-    for (std::size_t i = 0; i < block_count; ++i) {
-      const std::size_t first = kBlock * block[i], end = std::min(first + kBlock, count);
-      float least = FLT_MAX, most = -FLT_MAX;
-      for (std::size_t t = first; t < end; ++t) {
-        const float p = at[corners[3 * t]], q = at[corners[3 * t + 1]], r = at[corners[3 * t + 2]];
-        low[axis][t] = std::min(std::min(p, q), r);
-        high[axis][t] = std::max(std::max(p, q), r);
-        least = std::min(least, low[axis][t]);
-        most = std::max(most, high[axis][t]);
-      }
-      std::fill(low[axis] + end, low[axis] + first + kBlock, FLT_MAX);
-      std::fill(high[axis] + end, high[axis] + first + kBlock, -FLT_MAX);
-      block_low[axis][i] = least;
-      block_high[axis][i] = most;
-    }
     std::fill(block_low[axis] + block_count, block_low[axis] + block_count + kBlock, FLT_MAX);
     std::fill(block_high[axis] + block_count, block_high[axis] + block_count + kBlock, -FLT_MAX);
   }
+  std::fill(has_boxes, has_boxes + block_count, 0U);
+}
+
+bool Sweep::Boxes::make_boxes(std::size_t i, const float* const (&seen)[3]) {
+  if (has_boxes[i] != 0) {
+    return false;
+  }
+  has_boxes[i] = 1;
+  const std::size_t first = kBlock * block[i], end = std::min(first + kBlock, count);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float* const at = seen[axis];
+    float least = FLT_MAX, most = -FLT_MAX;
+    for (std::size_t t = first; t < end; ++t) {
+      const float p = at[corners[3 * t]], q = at[corners[3 * t + 1]], r = at[corners[3 * t + 2]];
+      low[axis][t] = std::min(std::min(p, q), r);
+      high[axis][t] = std::max(std::max(p, q), r);
+      least = std::min(least, low[axis][t]);
+      most = std::max(most, high[axis][t]);
+    }
+    std::fill(low[axis] + end, low[axis] + first + kBlock, FLT_MAX);
+    std::fill(high[axis] + end, high[axis] + first + kBlock, -FLT_MAX);
+    block_low[axis][i] = least;
+    block_high[axis][i] = most;
+  }
+  return true;
 }
 
 void Sweep::keep(const Room& room) {
@@ -213,8 +223,8 @@ void Sweep::see_boxes(double depth) {
       out[i] = a.x * x[i] + (a.y * y[i] + a.z * z[i]);
     }
   }
-  a_.view(vertices_.seen);
-  b_.view(vertices_.seen);
+  a_.close();
+  b_.close();
 }
 
 }  // namespace spherechain
