@@ -49,9 +49,9 @@ typedef struct sc_query {
   const sc_rule* rule SC_ZERO; /* null: sc_default_rule() */
   uint32_t classes SC_ZERO;    /* bit k: penetrations of class k are listed; 0: faults alone */
   size_t limit SC_ZERO;        /* the worst so many; 0: as many as there is room for */
-  /* The last penetrations of the same question: the direction of a fault then stays while it is nearly as good as the
-   * shortest (sc_penetration.distance). The body's last list is valid for that long; who asks several questions in turn
-   * keeps a copy of each list. */
+  /* The last penetrations of the same question: a fault's direction then turns by less than 30 degrees while such a way
+   * is at most half as long again as the shortest (sc_penetration.distance). The body's last list is valid for that
+   * long; who asks several questions in turn keeps a copy of each list. */
   const sc_penetration* previous SC_ZERO;
   size_t previous_count SC_ZERO;
   float tolerance SC_ZERO;  /* of steps, a share of the height; 0: 0.0001 */

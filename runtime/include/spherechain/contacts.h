@@ -46,7 +46,7 @@ typedef struct sc_penetration {
   /* In the pose's space, of unit length. `part`, moved by distance * direction, no longer intersects `other`. Of a part
    * that meets itself, one side of the triangles that intersect moves. */
   sc_vec3 direction;
-  float distance;    /* measures.depth, or up to a quarter more where `previous` keeps the direction */
+  float distance;    /* measures.depth; up to 1.5 times as much where `previous` keeps the direction */
   sc_vec3 centre;    /* of the line where the parts cross; of the ground: of the box */
   sc_vec3 low, high; /* a box around that line; of the ground: around the skin below it */
   sc_skin_point deepest, deepest_other; /* the points that part last; deepest_other - deepest = distance * direction */

@@ -11,10 +11,10 @@ constexpr int kWidenings = 4;  // of what is near
 // A way shorter than this share of the contour's width is the shortest (841 faults of seven characters: no other
 // direction was shorter by a hundredth).
 constexpr double kShallow = 0.5;
-constexpr double kLikely = 2;           // times what the contour alone blocks: ways are seldom longer
-constexpr double kNearlyAsGood = 1.25;  // times the shortest: the last frame's direction is kept
-constexpr double kSameWay = 0.5;        // cosine: a direction that is refined farther is another
-constexpr double kSame = 0.9998;        // cosine: a direction that is as near to another is not tried again
+constexpr double kLikely = 2;          // times what the contour alone blocks: ways are seldom longer
+constexpr double kNearlyAsGood = 1.5;  // times the shortest: the last frame's direction is kept
+constexpr double kSameWay = 0.866;     // cosine: a direction that turns farther from the last frame's is another
+constexpr double kSame = 0.9998;       // cosine: a direction that is as near to another is not tried again
 
 class Search {
  public:
