@@ -64,7 +64,7 @@ const recall = (s) => share(s.found, s.truth), precision = (s) => share(s.right,
 function validate(row, profile, radius) {
   return row.motions.map((motion) => {
     const json = join(folder, "found.json");
-    run("validate", asset(row.mesh, profile), "--source", row.mesh, ...motion, "--frames", String(kFrames),
+    runs(join(dirname(tool), "accuracy_study"), asset(row.mesh, profile), "--source", row.mesh, ...motion, "--frames", String(kFrames),
       "--radius", radius, ...(radius === "detect" ? ["--contacts"] : []), "--json", json);
     return JSON.parse(readFileSync(json, "utf8"));
   });

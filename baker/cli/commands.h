@@ -31,7 +31,7 @@ struct PlayOptions {
   std::string asset, source, json;
   MotionChoice motion;
   FrameChoice frames;
-  std::string mode = "both", radius = "detect", backend = "auto";
+  std::string radius = "detect", backend = "auto";
   bool contacts = false, continuous = false;
 };
 ExitCode run_play(const PlayOptions& options);
@@ -40,7 +40,7 @@ struct ValidateOptions {
   std::string asset, source, json;
   MotionChoice motion;
   FrameChoice frames;
-  std::string mode = "all_pairs", radius = "detect";
+  std::string radius = "detect";
   bool contacts = false, spheres_alone = false, continuous = false;
 };
 ExitCode run_validate(const ValidateOptions& options);

@@ -192,15 +192,12 @@ int main(int argc, char** argv) {
   add_name(*play_command, "ASSET", play.asset, "Asset (.sphc)")->required();
   add_name(*play_command, "--source", play.source, "The mesh it was baked from")->required();
   add_motion(*play_command, play.motion, play.frames, play.continuous);
-  play_command->add_option("--mode", play.mode, "Test of the spheres: along chains, all pairs, or both")
-      ->check(CLI::IsMember({"all_pairs", "chains", "both"}))
-      ->capture_default_str();
   add_radius(*play_command, play.radius);
   play_command
       ->add_option(
           "--backend", play.backend,
           "How it is computed: auto is simd, with the best instructions this machine has, where "
-          "SPHERECHAIN_TARGET names no others; cuda plays all frames at once on a GPU, all pairs alone, from bones")
+          "SPHERECHAIN_TARGET names no others; cuda plays all frames at once on a GPU, from bones")
       ->check(CLI::IsMember({"auto", "scalar", "simd", "cuda"}))
       ->capture_default_str();
   play_command->add_flag("--contacts", play.contacts, "List the triangles that intersect in the JSON, too");
@@ -213,9 +210,6 @@ int main(int argc, char** argv) {
   add_name(*validate_command, "ASSET", validate.asset, "Asset (.sphc)")->required();
   add_name(*validate_command, "--source", validate.source, "The mesh it was baked from")->required();
   add_motion(*validate_command, validate.motion, validate.frames, validate.continuous);
-  validate_command->add_option("--mode", validate.mode, "Test of the spheres: along chains, or all pairs")
-      ->check(CLI::IsMember({"all_pairs", "chains"}))
-      ->capture_default_str();
   add_radius(*validate_command, validate.radius);
   validate_command->add_flag("--contacts", validate.contacts, "Compare the narrow phase's triangle pairs too");
   validate_command->add_flag("--spheres-alone", validate.spheres_alone,

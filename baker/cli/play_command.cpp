@@ -35,14 +35,7 @@ class Tally {
     ++frames_;
     last_ = result;
     refit_us_ += result.refit_us;
-    if (result.chains) {
-      chains_us_ += result.chains->us;
-      chains_pairs_ += result.chains->pairs;
-    }
-    if (result.all_pairs) {
-      all_pairs_us_ += result.all_pairs->us;
-      all_pairs_ += result.all_pairs->pairs;
-    }
+    all_pairs_us_ += result.all_pairs.us;
     skin_us_ += skin_us;
     measure_us_ += measure_us;
     skin_ += skin.size();
@@ -71,18 +64,16 @@ class Tally {
     const auto mean = [&](std::size_t pairs) { return fmt::format("{:.1f}", static_cast<double>(pairs) / n); };
     std::string out = fmt::format("{:<10} {:>8} {:>10} {:>10}\n", "a frame", "tests", "pairs", "us");
     out += row("refit", "", "", refit_us_);
-    if (last_.chains) out += row("chains", std::to_string(last_.chains->tests), mean(chains_pairs_), chains_us_);
-    if (last_.all_pairs)
-      out += row("all pairs", std::to_string(last_.all_pairs->tests), mean(all_pairs_), all_pairs_us_);
+    out += row("all pairs", std::to_string(last_.all_pairs.tests), mean(alarmed_), all_pairs_us_);
     return out + row("skin", "", mean(skin_), skin_us_) + row("depth", "", "", measure_us_);
   }
 
  private:
   int frames_ = 0;
   FrameResult last_;
-  double refit_us_ = 0, chains_us_ = 0, all_pairs_us_ = 0, skin_us_ = 0, measure_us_ = 0;
-  // Pairs of spheres; alarmed: by the last method that ran.
-  std::size_t chains_pairs_ = 0, all_pairs_ = 0, skin_ = 0, alarmed_ = 0, confirmed_ = 0;
+  double refit_us_ = 0, all_pairs_us_ = 0, skin_us_ = 0, measure_us_ = 0;
+  // Pairs of spheres; alarmed: they touch.
+  std::size_t skin_ = 0, alarmed_ = 0, confirmed_ = 0;
 };
 
 std::string frames_text(const AnimatedAsset& animated) {
@@ -96,9 +87,6 @@ ExitCode run_play(const PlayOptions& options) {
   check_outputs(with_motion(with_source({{"ASSET", options.asset}}, "--source", options.source), options.motion),
                 {{"--json", options.json, FileKind::kJson}}, Force::kNone);
   const bool on_cuda = options.backend == "cuda";
-  if (on_cuda && options.mode == "chains") {
-    throw Error(ExitCode::kUsage, "--backend cuda: does not test by chains (--mode all_pairs)");
-  }
   const Target target = choose_target(on_cuda ? "auto" : options.backend);
   const Radius radius = options.radius == "fit" ? SC_RADIUS_FIT : SC_RADIUS_DETECT;
   AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
@@ -106,7 +94,7 @@ ExitCode run_play(const PlayOptions& options) {
   animated.check_clusters();
   CudaFrames cuda;
   if (on_cuda) cuda = play_on_cuda(animated, radius);
-  Player player(animated.asset(), radius, options.mode != "all_pairs", options.mode != "chains", target);
+  Player player(animated.asset(), radius, target);
   PartContacts contacts(animated);
   std::vector<HiddenJoints> hidden(animated.clips().size(), HiddenJoints(animated));  // of each clip
   Tally tally;

@@ -19,7 +19,6 @@ ExitCode run_validate(const ValidateOptions& options) {
                 {{"--json", options.json, FileKind::kJson}}, Force::kNone);
   ValidateSettings settings;
   settings.radius = options.radius == "fit" ? SC_RADIUS_FIT : SC_RADIUS_DETECT;
-  settings.method = options.mode == "chains" ? Method::kChains : Method::kAllPairs;
   settings.target = choose_target("auto");
   settings.contacts = options.contacts;
   settings.skin = !options.spheres_alone;

@@ -81,17 +81,14 @@ PageParts page_parts(const OpenAsset& asset) {
   return out;
 }
 
-PageFrames::PageFrames(const AnimatedAsset& animated, Radius radius)
-    : radius_(radius),
-      fit_(checked(animated).asset(), SC_RADIUS_FIT, true, true, choose_target("auto")),
-      detect_(animated.asset(), SC_RADIUS_DETECT, true, true, choose_target("auto")) {}
+PageFrames::PageFrames(const AnimatedAsset& animated)
+    : fit_(checked(animated).asset(), SC_RADIUS_FIT, choose_target("auto")),
+      detect_(animated.asset(), SC_RADIUS_DETECT, choose_target("auto")) {}
 
 PageFrame PageFrames::run(const std::vector<float>& positions, const sc_pose& skin, bool is_next) {
   PageFrame out;
-  const FrameResult fit = fit_.run(positions), detect = detect_.run(positions);
-  const FrameResult& shown = radius_ == SC_RADIUS_FIT ? fit : detect;
-  out.chains = *shown.chains;
-  out.all_pairs = *shown.all_pairs;
+  fit_.run(positions);
+  detect_.run(positions);
   out.fit_pairs = pairs_of(fit_);
   out.detect_pairs = pairs_of(detect_);
   for (std::size_t s = 0; s < fit_.spheres().size(); ++s) {

@@ -37,19 +37,17 @@ struct PageFrame {
   std::vector<float> spheres;                           // a sphere's x, y, z, fit radius, detect radius
   std::vector<std::array<std::uint16_t, 2>> fit_pairs;  // spheres that touch at these radii
   std::vector<std::array<std::uint16_t, 2>> detect_pairs;
-  Detection chains, all_pairs;  // at the radius the page starts with
 };
 
 class PageFrames {
  public:
   // Throws Error(kFile) where the asset cannot tell contacts.
-  PageFrames(const AnimatedAsset& animated, Radius radius);
+  explicit PageFrames(const AnimatedAsset& animated);
 
   // `positions` are the deformed source vertices; `is_next`: of the clip's next frame.
   PageFrame run(const std::vector<float>& positions, const sc_pose& skin, bool is_next);
 
  private:
-  Radius radius_;
   Player fit_, detect_;
 };
 

@@ -23,19 +23,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Tests and pairs of each frame. No times: the same input makes the same page.
-class Costs {
- public:
-  void add(const Detection& detection) {
-    tests_.push_back(static_cast<std::uint32_t>(detection.tests));
-    pairs_.push_back(static_cast<std::uint32_t>(detection.raw_pairs));
-  }
-  ordered_json json() const { return {{"tests", base64(tests_)}, {"pairs", base64(pairs_)}}; }
-
- private:
-  std::vector<std::uint32_t> tests_, pairs_;
-};
-
 ordered_json parsed_or_null(const std::string& text) {
   return text.empty() ? ordered_json() : ordered_json::parse(text);
 }
@@ -89,12 +76,11 @@ std::vector<std::array<std::uint16_t, 2>> collider_pairs_of(const Colliders& col
 ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& options, double still, PageMotion& motion,
                          const std::function<void(int)>& progress) {
   const int frames = animated.frame_count();
-  PageFrames runtime(animated, options.radius);
+  PageFrames runtime(animated);
   std::vector<float> numbers, times, seconds, spheres;
   FrameLists<std::array<std::uint32_t, 2>> contacts;
   FrameLists<PenetrationEntry> penetrations;
   FrameLists<std::array<std::uint16_t, 2>> fit_pairs, detect_pairs, collider_pairs;
-  Costs chains, all_pairs;
   for (int i = 0; i < frames; ++i) {
     progress(i);
     const Deformation deformation = animated.deformation(i);
@@ -111,8 +97,6 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
     fit_pairs.add(frame.fit_pairs);
     detect_pairs.add(frame.detect_pairs);
     if (options.colliders != nullptr) collider_pairs.add(collider_pairs_of(*options.colliders, deformation));
-    chains.add(frame.chains);
-    all_pairs.add(frame.all_pairs);
     // Base64 has four letters for three bytes.
     constexpr std::size_t kFigures = 10 * sizeof(float);  // times, counts and tests of a frame
     const std::size_t bytes = times.size() * kFigures + motion.bytes() + spheres.size() * sizeof(float) +
@@ -129,9 +113,7 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
           {"penetrations", penetrations.json()},
           {"fit", fit_pairs.json()},
           {"detect", detect_pairs.json()},
-          {"colliders", collider_pairs.json()},
-          {"chains", chains.json()},
-          {"all_pairs", all_pairs.json()}};
+          {"colliders", collider_pairs.json()}};
 }
 
 }  // namespace

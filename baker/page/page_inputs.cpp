@@ -109,7 +109,6 @@ std::string read_bake_report(const std::string& file, const OpenAsset& asset, co
   }
   const Value counts = report["counts"];
   counts["why"].text();
-  counts["paper"].numbers({"spheres_by_its_chain_counts", "spheres_as_stated", "chain_entries"});
   const Value quality = report["bind"]["quality"];
   quality["grade"].text();
   quality.numbers({"far_area", "protrusion"});
@@ -132,7 +131,7 @@ std::string read_validation(const std::string& file, const OpenAsset& asset, con
     refuse(file, asset_file, "it is of an asset with other settings");
   }
   check_score(validation);
-  for (const char* of : {"skin", "all_pairs", "chains"}) check_score(validation[of]);
+  for (const char* of : {"skin", "all_pairs"}) check_score(validation[of]);
   validation["radius"].text();
   validation["reported"].text();
   validation.numbers({"raw_pairs", "truth_pairs"});

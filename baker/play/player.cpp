@@ -5,7 +5,6 @@
 #include <chrono>
 
 #include "pairs/detect_job.h"
-#include "pairs/plain_detection.h"
 #include "refit/refit_job.h"
 
 namespace spherechain::baker {
@@ -48,11 +47,9 @@ std::vector<Sphere> refit_spheres(const OpenAsset& asset, const std::vector<floa
   return spheres;
 }
 
-Player::Player(const OpenAsset& asset, Radius radius, bool chains, bool all_pairs, Target target)
+Player::Player(const OpenAsset& asset, Radius radius, Target target)
     : asset_(asset),
       radius_(radius),
-      chains_(chains),
-      all_pairs_(all_pairs),
       target_(target),
       skin_(asset, target),
       spheres_(asset->spheres().size),
@@ -66,8 +63,7 @@ FrameResult Player::run(const std::vector<float>& positions) {
   const RefitJob refit = refit_job(asset_, positions, radius_, spheres_);
   FrameResult result;
   result.refit_us = median_us([&] { check_runtime(refit.run()); });
-  if (chains_) result.chains = detect(Method::kChains);
-  if (all_pairs_) result.all_pairs = detect(Method::kAllPairs);
+  result.all_pairs = detect();
   return result;
 }
 
@@ -75,7 +71,7 @@ Detection Player::take(std::vector<Sphere> spheres, const std::vector<Pair>& pai
   spheres_ = std::move(spheres);
   pair_count_ = pairs.size();
   std::copy(pairs.begin(), pairs.end(), pairs_.begin());
-  return {pairs_.size() - asset_->ignored_count(), pair_count_, pair_count_, us};
+  return {pairs_.size() - asset_->ignored_count(), pair_count_, us};
 }
 
 Player::TriangleDetection Player::detect_triangles(const sc_pose& pose, bool is_next) {
@@ -105,15 +101,7 @@ std::vector<Pair> Player::spheres_of(const std::vector<Pair>& triangles) const {
   return out;
 }
 
-Detection Player::detect(Method method) {
-  if (method == Method::kChains) {
-    const PlainDetection plain(asset_.view(), radius_);
-    PlainResult found;
-    const double us = median_us([&] { found = plain.chains(spheres_.data()); });
-    pair_count_ = found.pairs.size();
-    std::copy(found.pairs.begin(), found.pairs.end(), pairs_.begin());
-    return {found.test_count, pair_count_, found.chain_pairs.size(), us};
-  }
+Detection Player::detect() {
   DetectJob job;
   job.asset = asset_.handle();
   job.spheres = spheres_.data();
@@ -124,7 +112,7 @@ Detection Player::detect(Method method) {
   job.pair_capacity = pairs_.size();
   const double us = median_us([&] { check_runtime(job.run()); });
   pair_count_ = job.pair_count;
-  return {pairs_.size() - asset_->ignored_count(), job.pair_count, job.pair_count, us};
+  return {pairs_.size() - asset_->ignored_count(), job.pair_count, us};
 }
 
 }  // namespace spherechain::baker

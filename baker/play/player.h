@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -11,13 +10,10 @@
 
 namespace spherechain::baker {
 
-// The paper's two methods: chain by chain, and over all pairs, which is the product's.
-enum class Method { kChains, kAllPairs };
-
-// What one method found in a frame and what it cost.
+// The pairs of spheres that touch in a frame, how many were tested, and the time that it took.
 struct Detection {
-  std::size_t tests, pairs, raw_pairs;  // pairs: each once; raw_pairs: with the repeats of pairs in several chains
-  double us;                            // median of a few runs
+  std::size_t tests, pairs;
+  double us;  // median of a few runs
 };
 
 // The runtime's refit of the whole asset.
@@ -25,18 +21,18 @@ std::vector<Sphere> refit_spheres(const OpenAsset& asset, const std::vector<floa
 
 struct FrameResult {
   double refit_us = 0;
-  std::optional<Detection> chains, all_pairs;
+  Detection all_pairs{};
 };
 
 // The runtime as a game uses it: buffers made once, then a refit and a detection a frame.
 class Player {
  public:
-  Player(const OpenAsset& asset, Radius radius, bool chains, bool all_pairs, Target target);
+  Player(const OpenAsset& asset, Radius radius, Target target);
 
   // `positions` are the deformed source vertices.
   FrameResult run(const std::vector<float>& positions);
 
-  // Takes a frame that was computed elsewhere for its last one. Returns all_pairs' part of it, `us` as given.
+  // Takes a frame that was computed elsewhere as its last one. Returns its detection, with `us` as given.
   Detection take(std::vector<Sphere> spheres, const std::vector<Pair>& pairs, double us);
 
   // Skin contacts: triangles that intersect, by their numbers in the source, and what finding them costs. The asset
@@ -52,17 +48,15 @@ class Player {
   // The spheres that these triangles belong to: pairs a < b, sorted.
   std::vector<Pair> spheres_of(const std::vector<Pair>& triangles) const;
 
-  // Of the last frame: the refitted spheres, and the pairs the last method found (both report the same, but chains
-  // leave out pairs in no common chain).
+  // The last frame's refitted spheres, and their pairs that touch.
   const std::vector<Sphere>& spheres() const { return spheres_; }
   Span<const Pair> pairs() const { return {pairs_.data(), pair_count_}; }
 
  private:
-  Detection detect(Method method);
+  Detection detect();
 
   const OpenAsset& asset_;
   Radius radius_;
-  bool chains_, all_pairs_;
   Target target_;
   SkinPlayer skin_;
   std::vector<Sphere> spheres_;

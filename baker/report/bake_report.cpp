@@ -217,9 +217,7 @@ ordered_json counts_section(const Bake& bake) {
   }
   return {{"spheres", n},
           {"why", why_this_count(bake)},
-          {"paper", {{"spheres_by_its_chain_counts", 46}, {"spheres_as_stated", 80}, {"chain_entries", 138}}},
           {"chain_entries", bake.chains.entries()},
-          {"chain_entries_table1", bake.chains.entries_table1},
           {"chains_tests", chains_tests},
           {"all_pairs_tests", n * (n - 1) / 2 - bake.binding.ignored.size()},
           {"ignored_pairs", bake.binding.ignored.size()},

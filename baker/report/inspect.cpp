@@ -152,7 +152,6 @@ std::string inspect_json(const OpenAsset& asset) {
       {"refit", refit_name(asset->refit_rule())},
       {"sphere_count", asset->spheres().size},
       {"chain_entries", count_chain_entries(asset)},
-      {"chain_entries_table1", fit.chain_entries_table1},
       {"ignored_pairs", count_ignored(asset)},
       {"rest_pairs",
        {{"fit", asset->rest_pairs(SC_RADIUS_FIT).size}, {"detect", asset->rest_pairs(SC_RADIUS_DETECT).size}}},
@@ -187,8 +186,8 @@ std::string inspect_text(const OpenAsset& asset) {
                      info.vertex_count, info.triangle_count, info.source_sha256);
   out += fmt::format("settings {}\n         sha256 {}\n", info.settings, info.settings_sha256);
   out += fmt::format("refit    {}\n", refit_name(asset->refit_rule()));
-  out += fmt::format("spheres  {}, {} chain entries ({} as Table 1 counts), {} pairs ignored, {} joints\n",
-                     asset->spheres().size, count_chain_entries(asset), fit.chain_entries_table1, count_ignored(asset),
+  out += fmt::format("spheres  {}, {} chain entries, {} pairs ignored, {} joints\n",
+                     asset->spheres().size, count_chain_entries(asset), count_ignored(asset),
                      asset->joint_count());
   out += fmt::format("bones    {}, {} morph targets\n", asset->bone_count(), asset->morph_count());
   if (const MomentTables& moments = asset->moment_tables(); moments.moments.size > 0) {

@@ -22,13 +22,8 @@ ordered_json frame_json(const AnimatedAsset& animated, int index, const FrameRes
   if (const std::string& clip = animated.clip_at(index); !clip.empty()) out["clip"] = clip;
   out["clip_frame"] = number_json(animated.number(index));
   out["refit_us"] = result.refit_us;
-  if (const auto& chains = result.chains) {
-    out["chains"] = {
-        {"tests", chains->tests}, {"pairs", chains->raw_pairs}, {"unique_pairs", chains->pairs}, {"us", chains->us}};
-  }
-  if (const auto& all = result.all_pairs) {
-    out["all_pairs"] = {{"tests", all->tests}, {"pairs", all->pairs}, {"us", all->us}};
-  }
+  const Detection& all = result.all_pairs;
+  out["all_pairs"] = {{"tests", all.tests}, {"pairs", all.pairs}, {"us", all.us}};
   out["pairs"] = pairs_json(player.pairs());
   return out;
 }

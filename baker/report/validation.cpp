@@ -21,8 +21,7 @@ const char* radius_name(Radius radius) { return radius == SC_RADIUS_FIT ? "fit" 
 
 // What the figures without a name of their own are of.
 const char* reported_name(const ValidateSettings& settings) {
-  if (settings.skin) return "skin";
-  return settings.method == Method::kChains ? "chains" : "all_pairs";
+  return settings.skin ? "skin" : "all_pairs";
 }
 
 // Null where there is nothing to share.
@@ -32,16 +31,6 @@ ordered_json share_json(const std::optional<double>& share) {
 
 std::string share_text(const std::optional<double>& share, int digits) {
   return share ? fmt::format("{:.{}f}", *share, digits) : "-";
-}
-
-ordered_json score_json(const Score& score) {
-  return {{"pair_recall", share_json(score.pair_recall())},
-          {"far_recall", share_json(score.far_recall())},
-          {"frame_any_recall", share_json(score.frame_any_recall())},
-          {"frame_all_recall", share_json(score.frame_all_recall())},
-          {"precision", share_json(score.precision())},
-          {"apart_precision", share_json(score.apart_precision())},
-          {"reported_per_frame", score.reported_per_frame()}};
 }
 
 ordered_json errors_json(const ContactErrors& errors) { return {{"missing", errors.missing}, {"extra", errors.extra}}; }
@@ -57,52 +46,11 @@ ordered_json groups_json(const std::vector<PairGroup>& groups) {
   return out;
 }
 
-// The points whose radius is another, or whose rest scale.
-ordered_json curve_json(const std::vector<CurvePoint>& curve, bool radius) {
-  ordered_json out = ordered_json::array();
-  for (const CurvePoint& point : curve) {
-    if (radius == point.change.rest_scale.has_value()) continue;
-    ordered_json entry;
-    if (radius) {
-      entry["scale"] = point.change.scale;
-    } else {
-      entry["rest_scale"] = *point.change.rest_scale;
-    }
-    entry["all_pairs"] = score_json(point.all_pairs);
-    entry["chains"] = score_json(point.chains);
-    out.push_back(std::move(entry));
-  }
-  return out;
-}
-
 std::string groups_text(const std::string& title, const std::vector<PairGroup>& groups) {
   std::string out = fmt::format("\n{:<28} {:>8} {:>8} {:>10}\n", title, "true", "found", "reported");
   for (const PairGroup& group : groups) {
     out +=
         fmt::format("  {:<26} {:>8} {:>8} {:>10}\n", group.name, group.true_pairs, group.found_pairs, group.reported);
-  }
-  return out;
-}
-
-std::string curve_row(const std::string& name, const Score& chains, const Score& all_pairs) {
-  std::string out = fmt::format("  {:<18}", name);
-  for (const Score* score : {&all_pairs, &chains}) {
-    out += fmt::format(" {:>9} {:>9} {:>9.2f}  ", share_text(score->pair_recall(), 4),
-                       share_text(score->precision(), 4), score->reported_per_frame());
-  }
-  out.resize(out.find_last_not_of(' ') + 1);
-  return out + "\n";
-}
-
-std::string curve_text(const Validation& validation) {
-  std::string out = fmt::format("\n{:<20} {:<31}  {}\n", "spheres otherwise", "all pairs", "chains");
-  out += fmt::format("{:<20} {:>9} {:>9} {:>9}   {:>9} {:>9} {:>9}\n", "", "recall", "precision", "a frame", "recall",
-                     "precision", "a frame");
-  out += curve_row("as it is", validation.chains, validation.all_pairs);
-  for (const CurvePoint& point : validation.curve) {
-    const std::string name = point.change.rest_scale ? fmt::format("rest scale {:.1f}", *point.change.rest_scale)
-                                                     : fmt::format("radius x {:.1f}", point.change.scale);
-    out += curve_row(name, point.chains, point.all_pairs);
   }
   return out;
 }
@@ -119,8 +67,7 @@ std::string scores_text(const Validation& validation, double mm) {
   std::string out = fmt::format("{:<20} {:>11} {:>10} {:>10} {:>10} {:>10} {:>15}\n", "", "pair recall", "precision",
                                 "a frame", "any found", "all found", "missed depth");
   for (const auto& [name, score] :
-       {std::pair{"skin", &validation.skin}, std::pair{"spheres, all pairs", &validation.all_pairs},
-        std::pair{"spheres, chains", &validation.chains}}) {
+       {std::pair{"skin", &validation.skin}, std::pair{"spheres, all pairs", &validation.all_pairs}}) {
     out += fmt::format("{:<20} {:>11} {:>10} {:>10.2f} {:>10} {:>10} {:>12.0f} mm\n", name,
                        share_text(score->pair_recall(), 4), share_text(score->precision(), 4),
                        score->reported_per_frame(), share_text(score->frame_any_recall(), 4),
@@ -134,6 +81,16 @@ std::string scores_text(const Validation& validation, double mm) {
 std::size_t shown_misses(const Validation& validation) { return std::min(validation.misses.size(), kWorstMisses); }
 
 }  // namespace
+
+ordered_json score_json(const Score& score) {
+  return {{"pair_recall", share_json(score.pair_recall())},
+          {"far_recall", share_json(score.far_recall())},
+          {"frame_any_recall", share_json(score.frame_any_recall())},
+          {"frame_all_recall", share_json(score.frame_all_recall())},
+          {"precision", share_json(score.precision())},
+          {"apart_precision", share_json(score.apart_precision())},
+          {"reported_per_frame", score.reported_per_frame()}};
+}
 
 std::string validation_json(const Validation& validation, const AnimatedAsset& animated,
                             const ValidateSettings& settings) {
@@ -169,25 +126,11 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
       out["neighbour_contacts_from_bones"] = errors_json(*from_bones);
     }
   }
-  for (const auto& [name, of] : {std::pair{"skin", &validation.skin}, std::pair{"all_pairs", &validation.all_pairs},
-                                 std::pair{"chains", &validation.chains}}) {
+  for (const auto& [name, of] : {std::pair{"skin", &validation.skin}, std::pair{"all_pairs", &validation.all_pairs}}) {
     out[name] = score_json(*of);
     out[name]["missed_depth_mm"] = mm * of->missed_depth;
   }
-  if (validation.capsules > 0) {
-    out["capsules"] = {{"count", validation.capsules}, {"curve", ordered_json::array()}};
-    for (const CapsulePoint& point : validation.capsule_curve) {
-      ordered_json entry{{"quantile", point.quantile}};
-      entry.update(score_json(point.score));
-      entry["own_truth_pairs"] = point.own.true_pairs;
-      entry["own_pair_recall"] = share_json(point.own.pair_recall());
-      out["capsules"]["curve"].push_back(std::move(entry));
-    }
-  }
   out["by_region"] = groups_json(validation.by_region);
-  out["by_chain"] = groups_json(validation.by_chain);
-  out["radius_curve"] = curve_json(validation.curve, true);
-  out["rest_curve"] = curve_json(validation.curve, false);
   out["worst_misses"] = ordered_json::array();
   for (std::size_t i = 0; i < shown_misses(validation); ++i) {
     const Miss& miss = validation.misses[i];
@@ -213,9 +156,8 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
   out += fmt::format("  of one sphere                 {:>8}\n", validation.same_sphere);
   out += fmt::format("  of ignored spheres            {:>8}\n", validation.ignored);
   out += fmt::format("  true                          {:>8}  in {} frames\n\n", score.true_pairs, score.true_frames);
-  const Score& spheres = settings.method == Method::kChains ? validation.chains : validation.all_pairs;
   if (score.true_pairs == 0) out += "no true contact in this motion: there is nothing to recall\n";
-  out += score_line("spheres:", spheres) + score_line("skin:   ", validation.skin) + "\n";
+  out += score_line("spheres:", validation.all_pairs) + score_line("skin:   ", validation.skin) + "\n";
   out += scores_text(validation, mm);
   if (settings.contacts) {
     const auto errors = [](const ContactErrors& of) {
@@ -240,18 +182,7 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
     out += fmt::format("  {:>5}  {:>3} - {:<3} {:>5}  {:.0f}\n", miss.frame, miss.spheres.a, miss.spheres.b,
                        miss.triangle_pairs, mm * miss.depth);
   }
-  if (validation.capsules > 0) {
-    out += fmt::format("\n{:<18} {:>9} {:>9} {:>9}   {:>9}\n", fmt::format("{} capsules", validation.capsules),
-                       "recall", "precision", "a frame", "own truth");
-    for (const CapsulePoint& point : validation.capsule_curve) {
-      out += fmt::format("  {:<16} {:>9} {:>9} {:>9.2f}   {:>9}\n", fmt::format("quantile {:.1f}", point.quantile),
-                         share_text(point.score.pair_recall(), 4), share_text(point.score.precision(), 4),
-                         point.score.reported_per_frame(), share_text(point.own.pair_recall(), 4));
-    }
-  }
   out += groups_text(fmt::format("{} between regions", reported_name(settings)), validation.by_region);
-  out += groups_text("by chain", validation.by_chain);
-  out += curve_text(validation);
   return out;
 }
 

@@ -38,28 +38,4 @@ void RegionGroups::add(const FrameTruth& truth, const std::vector<Pair>& reporte
   for (const Pair& pair : reported) ++of(pair).reported;
 }
 
-ChainGroups::ChainGroups(const OpenAsset& asset) : chains_(asset) {
-  for (std::size_t c = 0; c < chains_.chain_count(); ++c) groups_.push_back({chains_.name(c)});
-  groups_.push_back({"no chain"});
-}
-
-std::vector<PairGroup*> ChainGroups::of(const Pair& pair) {
-  std::vector<PairGroup*> out;
-  for (std::size_t c = 0; c < chains_.chain_count(); ++c) {
-    if (chains_.holds(c, pair)) out.push_back(&groups_[c]);
-  }
-  if (out.empty()) out.push_back(&groups_.back());
-  return out;
-}
-
-void ChainGroups::add(const FrameTruth& truth, const std::vector<Pair>& reported) {
-  for (const TrueContact& contact : truth.contacts) {
-    const bool found = contains(reported, contact.spheres);
-    for (PairGroup* group : of(contact.spheres)) count(*group, contact, found);
-  }
-  for (const Pair& pair : reported) {
-    for (PairGroup* group : of(pair)) ++group->reported;
-  }
-}
-
 }  // namespace spherechain::baker

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "truth/pair_rule.h"
+#include "play/asset_file.h"
 #include "truth/truth.h"
 
 namespace spherechain::baker {
@@ -28,20 +28,6 @@ class RegionGroups {
 
   std::vector<std::size_t> region_of_;
   std::size_t regions_;
-  std::vector<PairGroup> groups_;
-};
-
-// A chain each, a pair in all that hold both of its spheres; the last is "no chain".
-class ChainGroups {
- public:
-  explicit ChainGroups(const OpenAsset& asset);
-  void add(const FrameTruth& truth, const std::vector<Pair>& reported);
-  const std::vector<PairGroup>& groups() const { return groups_; }
-
- private:
-  std::vector<PairGroup*> of(const Pair& pair);
-
-  ChainMembers chains_;
   std::vector<PairGroup> groups_;
 };
 

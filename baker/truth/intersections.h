@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <set>
 #include <vector>
 
@@ -29,6 +30,29 @@ std::vector<Pair> find_intersections(const TruthSurface& a, const std::vector<fl
 // Whether a triangle of the one list (places in the surface) is closer than `distance` to one of the other.
 bool any_closer(const TruthSurface& surface, const std::vector<float>& positions, const std::vector<Index>& one,
                 const std::vector<Index>& other, double distance);
+
+// Tells whether two owners' triangles are closer than `distance`, and remembers each answer. `surface` and `positions`
+// must outlive it.
+class Closeness {
+ public:
+  Closeness(const TruthSurface& surface, const std::vector<float>& positions, double distance)
+      : surface_(surface), positions_(positions), distance_(distance) {}
+
+  bool operator()(const Pair& pair) {
+    const auto [entry, is_new] = known_.try_emplace(pair, false);
+    if (is_new) {
+      entry->second =
+          any_closer(surface_, positions_, surface_.of_sphere[pair.a], surface_.of_sphere[pair.b], distance_);
+    }
+    return entry->second;
+  }
+
+ private:
+  const TruthSurface& surface_;
+  const std::vector<float>& positions_;
+  double distance_;
+  std::map<Pair, bool> known_;
+};
 
 // Which owners have triangles closer to each other than `distance`: a < b. `owner`: a place in the surface -> its
 // owner.

@@ -9,8 +9,9 @@
 #include "play/play.h"
 #include "play/player.h"
 #include "truth/contacts.h"
-#include "truth/curve.h"
+#include "truth/far_parts.h"
 #include "truth/groups.h"
+#include "truth/score.h"
 
 namespace spherechain::baker {
 
@@ -20,10 +21,9 @@ inline constexpr double kCloseSurface = 0.003;
 
 struct ValidateSettings {
   Radius radius = SC_RADIUS_DETECT;
-  Method method = Method::kAllPairs;
   Target target = SC_TARGET_SCALAR;
   bool contacts = false;        // the narrow phase too
-  bool skin = true;             // report the pairs whose skins intersect; else those of spheres that touch
+  bool skin = true;             // report spheres whose skins intersect; else spheres that touch
   std::filesystem::path cache;  // see truth_cache.h; empty: none
 };
 
@@ -37,13 +37,6 @@ struct Miss {
   double depth;
 };
 
-// A ragdoll of capsules of this quantile (truth/capsules.h): on the truth of the spheres, and on its own, which has
-// nothing within one capsule or between ignored ones.
-struct CapsulePoint {
-  double quantile;
-  Score score, own;
-};
-
 // The runtime's pairs against the truth, over all frames of a motion. `score`, `misses` and the groups are of the pairs
 // reported: those whose skins intersect, or those of the method asked for.
 struct Validation {
@@ -55,16 +48,30 @@ struct Validation {
   ContactErrors contacts, neighbour_contacts;
   std::optional<ContactErrors> contacts_from_bones, neighbour_contacts_from_bones;
   Score skin;               // of the pairs of spheres whose skins intersect
-  Score chains, all_pairs;  // of the pairs of spheres that touch
-  std::vector<CurvePoint> curve;
-  std::size_t capsules = 0;  // of the ragdoll; 0 where no bones move the source
-  std::vector<CapsulePoint> capsule_curve;
-  std::vector<PairGroup> by_region, by_chain;  // regions without any pair are left out
+  Score all_pairs;          // of the pairs of spheres that touch
+  std::vector<PairGroup> by_region;  // regions without any pair are left out
 };
 
-// The same whatever the number of threads. `progress` is told how many frames are done, one call at a time. Throws
-// Error(kFile) where the asset has no clusters.
+// A frame that is being validated, for what measures more of it.
+struct ValidatedFrame {
+  int index;
+  const TruthSurface& surface;
+  const FarParts& is_far;
+  const std::vector<Pair>& rest_pairs;  // triangles that intersect at rest
+  const Deformation& deformation;
+  const std::vector<float>& positions;
+  const Intersections& found;
+  const FrameTruth& truth;
+  const std::vector<Sphere>& spheres;  // refitted
+  const std::vector<Pair>& touching;   // spheres
+  const std::vector<Pair>& reported;
+  const std::function<bool(const Pair&)>&is_close, &is_apart;  // see score_frame()
+};
+
+// The result is the same whatever the number of threads. `progress` gets the number of frames that are done, one call
+// at a time; `observe` gets each frame, from several threads at once. Throws Error(kFile) if the asset has no clusters.
 Validation validate(const AnimatedAsset& animated, const ValidateSettings& settings,
-                    const std::function<void(int)>& progress);
+                    const std::function<void(int)>& progress,
+                    const std::function<void(const ValidatedFrame&)>& observe = {});
 
 }  // namespace spherechain::baker

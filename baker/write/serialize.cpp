@@ -142,7 +142,7 @@ std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<Pair
   builder.Finish(
       schema::CreateAsset(builder, kFormatVersion, provenance, source, frame,
                           static_cast<schema::Refit>(in.binding.rule), fit, regions_at, parts_at, spheres_at, pivots_at,
-                          chains_at, static_cast<std::uint32_t>(in.chains.entries_table1), ignored_at, rest_fit_at,
+                          chains_at, ignored_at, rest_fit_at,
                           rest_detect_at, joints_at, bones_at, morphs, moments, skin),
       schema::AssetIdentifier());
   return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pairs/plain_detection.h"
+#include "studies/plain_detection.h"
 
 namespace spherechain::bench {
 namespace {

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* kKeys[] = {"mesh",   "motion", "poses",    "clip",  "frames",   "profile", "settings",
-                                 "radius", "mode",   "contacts", "quick", "at_least", "at_most"};
+                                 "radius", "study",  "contacts", "quick", "at_least", "at_most"};
 
 struct TestDataMissing : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -74,6 +74,7 @@ class Gate {
 
   const std::string& name() const { return name_; }
   bool is_quick() const { return gate_.value("quick", false); }
+  bool is_study() const { return gate_.value("study", false); }
   std::string mesh() const { return resolve(text("mesh")); }
   std::string settings() const { return gate_.value("settings", json::object()).dump(); }
 
@@ -88,7 +89,7 @@ class Gate {
     }
     if (!text("clip").empty()) out += " --clip " + quoted(text("clip"));
     if (gate_.contains("frames")) out += fmt::format(" --frames {}", gate_["frames"].get<int>());
-    out += fmt::format(" --radius {} --mode {}", gate_.value("radius", "detect"), gate_.value("mode", "all_pairs"));
+    out += fmt::format(" --radius {}", gate_.value("radius", "detect"));
     return out + (gate_.value("contacts", false) ? " --contacts" : "");
   }
 
@@ -139,8 +140,9 @@ class Workshop {
   json validate(const Gate& gate) {
     const fs::path found = folder_ / "found.json";
     fs::remove(found);  // the last gate's
-    const std::string command = fmt::format("{} validate {} {} --json {} >/dev/null", SPHERECHAIN_TOOL,
-                                            asset(gate).string(), gate.validate_options(), found.string());
+    const std::string command =
+        fmt::format("{} {} {} --json {} >/dev/null", gate.is_study() ? SPHERECHAIN_STUDY : SPHERECHAIN_TOOL " validate",
+                    asset(gate).string(), gate.validate_options(), found.string());
     if (run(command) != 0) throw std::runtime_error("validate failed");
     return read_json(found);
   }

@@ -58,7 +58,6 @@ void add_chains(AssetParts& parts, std::mt19937& random) {
       std::swap(members[i - 1], members[random() % i]);
     }
     members.resize((n + 1) / 2);  // half of them, in no order: neither sorted nor disjoint from the other chains
-    parts.chain_entries_table1 += static_cast<std::uint32_t>(members.size());
     parts.chains.push_back({"zeta" + std::to_string(c), {static_cast<std::uint8_t>(c % 4), 4}, members});
   }
 }

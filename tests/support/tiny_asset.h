@@ -101,7 +101,6 @@ struct AssetParts {
   float height = 1.75F;
   FitError phi1{0.5F, 1.5F}, phi1_adjusted{0.25F, 1.25F}, phi2{0.75F, 2.5F};
   std::uint8_t refit = 1;  // of RefitRule
-  std::uint32_t chain_entries_table1 = 0;
   std::vector<RegionEntry> regions;
   std::vector<PartEntry> parts;
   std::vector<RestSphere> spheres;

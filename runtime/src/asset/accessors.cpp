@@ -136,7 +136,7 @@ AssetInfo AssetView::info() const noexcept {
 
 FitErrors AssetView::fit() const noexcept {
   const schema::Fit& fit = *root_->fit();
-  return {to_error(fit.phi1()), to_error(fit.phi1_adjusted()), to_error(fit.phi2()), root_->chain_entries_table1()};
+  return {to_error(fit.phi1()), to_error(fit.phi1_adjusted()), to_error(fit.phi2())};
 }
 
 std::size_t AssetView::region_count() const noexcept { return root_->regions()->size(); }

@@ -17,7 +17,7 @@ namespace schema {
 struct Asset;
 }
 
-inline constexpr std::uint32_t kFormatVersion = 4;
+inline constexpr std::uint32_t kFormatVersion = 5;
 inline constexpr std::uint32_t kMaxSphereCount = 65535, kMaxPartCount = 255;
 
 enum class RefitRule : std::uint8_t { kPaper = 0, kMoments = 1 };
@@ -76,7 +76,6 @@ struct FitError {
 // The paper's figures.
 struct FitErrors {
   FitError phi1, phi1_adjusted, phi2;
-  std::uint32_t chain_entries_table1;
 };
 
 class AssetView {

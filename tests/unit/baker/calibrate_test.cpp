@@ -50,7 +50,7 @@ TEST_CASE("in random poses of another seed the calibrated spheres report nearly 
           doctest::test_suite("many bakes")) {
   const Bake& bake = baked_human();
   const OpenAsset asset = open_asset_of(bake);
-  Player player(asset, SC_RADIUS_DETECT, false, true, SC_TARGET_SCALAR);
+  Player player(asset, SC_RADIUS_DETECT, SC_TARGET_SCALAR);
   const RandomPoses poses(bake.character, bake.joints);
   REQUIRE(poses.any());
   Random random(kOtherSeed);

@@ -63,7 +63,6 @@ TEST_CASE("inspect --json has the contract's fields and agrees with itself") {
   REQUIRE(asset["chains"].size() == 6);
   for (const json& chain : asset["chains"]) entries += chain["spheres"].size();
   CHECK(asset["chain_entries"] == entries);
-  CHECK(asset["chain_entries_table1"] == baked_human().chains.entries_table1);
   CHECK(asset["ignored_pairs"] == baked_human().binding.ignored.size());
   for (const char* fit : {"phi1", "phi1_adjusted", "phi2"}) {
     CHECK(asset["fit"][fit].contains("mean_abs_F"));
@@ -136,11 +135,9 @@ TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands
     CHECK(frame["clip_frame"] == i);
     CHECK(frame["time"].get<double>() == doctest::Approx(0.1 * static_cast<double>(i)));
     CHECK(frame.contains("refit_us"));
-    CHECK(frame["chains"]["unique_pairs"] <= frame["all_pairs"]["pairs"]);
-    CHECK(frame["chains"]["pairs"] >= frame["chains"]["unique_pairs"]);
     CHECK(frame["all_pairs"]["pairs"] == frame["pairs"].size());
     CHECK(frame["all_pairs"]["tests"] == both["frames"][0]["all_pairs"]["tests"]);
-    CHECK(frame["chains"].contains("us"));
+    CHECK(frame["all_pairs"].contains("us"));
     CHECK(frame["skin"].contains("us"));
     CHECK(std::is_sorted(frame["skin"]["sphere_pairs"].begin(), frame["skin"]["sphere_pairs"].end()));
     CHECK(!frame["skin"].contains("triangles"));
@@ -175,13 +172,11 @@ TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands
   REQUIRE(skin["parts"].size() == parts.size());
   for (const json& pair : skin["parts"]) CHECK(parts.at({pair["a"], pair["b"]}) == pair["triangle_pairs"]);
 
-  const Run scalar = play("--mode chains --radius fit --backend scalar");
+  const Run scalar = play("--radius fit --backend scalar");
   REQUIRE(scalar.code == 0);
   CHECK(scalar.out.find("rest pose: 1 frame at 30 fps. No contact.\n") == 0);
   CHECK(scalar.out.find("\n(radius fit, refit moments, backend scalar)\n") != std::string::npos);
   const json one = json::parse(contents(out));
-  CHECK(one["frames"][0].contains("chains"));
-  CHECK(!one["frames"][0].contains("all_pairs"));
   CHECK(one["backend"] == "scalar");
   CHECK(one["target"] == "scalar");
   CHECK(one["clips"][0]["contacts"].empty());
@@ -301,12 +296,11 @@ TEST_CASE("validate --json has the contract's fields, the same with a cache and 
   const json alone = validate("--spheres-alone", cache.string());
   CHECK(alone["reported"] == "all_pairs");
   for (const auto& [key, value] : alone["all_pairs"].items()) CHECK(alone[key] == value);
-  for (const char* name : {"skin", "all_pairs", "chains"}) CHECK(alone[name] == found[name]);
-  const json chains = validate("--mode chains --radius fit --spheres-alone", cache.string());
-  CHECK(chains["reported"] == "chains");
-  CHECK(chains["truth_pairs"] == found["truth_pairs"]);
-  CHECK(chains["radius"] == "fit");
-  CHECK(chains["chains"]["pair_recall"] <= found["all_pairs"]["pair_recall"]);
+  for (const char* name : {"skin", "all_pairs"}) CHECK(alone[name] == found[name]);
+  const json fit = validate("--radius fit --spheres-alone", cache.string());
+  CHECK(fit["truth_pairs"] == found["truth_pairs"]);
+  CHECK(fit["radius"] == "fit");
+  CHECK(fit["pair_recall"] <= alone["pair_recall"]);
 }
 
 TEST_CASE("docs/json.md names every key that is written") {

@@ -284,7 +284,7 @@ TEST_CASE("reports and tables replace those that the tool wrote, and nothing els
   const fs::path report = folder.path / "report.json";
   fs::copy(baked_files().report, report);
   // One after the other over the same file: what each writes, each replaces.
-  for (const std::string& command : {play, validate, play + "--mode all_pairs "}) {
+  for (const std::string& command : {play, validate, play + "--radius fit "}) {
     const std::string before = contents(report);
     const tool::Run done =
         run(fmt::format("{} --frames 1 --json {}", command, report.string()), "SPHERECHAIN_CACHE=off");

@@ -58,15 +58,13 @@ TEST_CASE("bake writes the same bytes as the library, a report and a table, and 
 }
 
 TEST_CASE(
-    "play --backend cuda finds all pairs on a GPU; where there is none it says so, exits with 1 and writes nothing") {
+    "play --backend cuda finds the pairs on a GPU; where there is none it says so, exits with 1 and writes nothing") {
   const TemporaryFolder folder;
   const fs::path out = folder.path / "play.json";
   const auto play = [&](const std::string& more) {
     return fmt::format("play {} --source {} --poses {} --frames 5 --json {} {}", baked_files().asset.string(),
                        kHumanFile, pose("arms_crossed.json"), out.string(), more);
   };
-  check_error(run(play("--backend cuda --mode chains")), 2,
-              {"--backend cuda: does not test by chains (--mode all_pairs)"});
   const Run on_gpu = run(play("--backend cuda"));
   if (on_gpu.code != 0) {
     check_error(on_gpu, 1, {"--backend cuda: ", "CUDA", "--backend auto needs no GPU"});
@@ -74,7 +72,7 @@ TEST_CASE(
     return;
   }
   const json cuda = json::parse(contents(out));
-  REQUIRE(run(play("--mode all_pairs")).code == 0);
+  REQUIRE(run(play("")).code == 0);
   const json simd = json::parse(contents(out));
   CHECK(cuda["backend"] == "cuda");
   for (std::size_t i = 0; i < 5; ++i) CHECK(cuda["frames"][i]["pairs"] == simd["frames"][i]["pairs"]);
@@ -177,9 +175,7 @@ TEST_CASE("usage errors end with 2") {
   check_error(run("frobnicate bake"), 2, {"'frobnicate'"});
   check_error(run("bake in out"), 2, {});
   check_error(run(fmt::format("bake {} -o x.sphc --profile fancy", kHumanFile)), 2, {"fancy"});
-  check_error(run(fmt::format("play {} --source {} --mode m1", baked_files().asset.string(), kHumanFile)), 2, {"m1"});
-  check_error(run(fmt::format("validate {} --source {} --mode both", baked_files().asset.string(), kHumanFile)), 2,
-              {"both"});
+  check_error(run(fmt::format("play {} --source {} --radius m1", baked_files().asset.string(), kHumanFile)), 2, {"m1"});
   check_error(run(fmt::format("play {} --source {} --frames 0", baked_files().asset.string(), kHumanFile)), 2, {});
   CHECK(run("--help").code == 0);
   CHECK(run("bake --help").out.find("--report") != std::string::npos);

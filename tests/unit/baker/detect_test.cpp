@@ -9,7 +9,7 @@
 
 #include "baked_human.h"
 #include "jobs.h"
-#include "pairs/plain_detection.h"
+#include "studies/plain_detection.h"
 
 using namespace spherechain::baker;
 using spherechain::Pair;

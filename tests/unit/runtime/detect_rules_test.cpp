@@ -7,7 +7,7 @@
 
 #include "exact_fma.h"
 #include "jobs.h"
-#include "pairs/plain_detection.h"
+#include "studies/plain_detection.h"
 #include "tiny_asset.h"
 
 namespace spherechain::test {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "jobs.h"
-#include "pairs/plain_detection.h"
+#include "studies/plain_detection.h"
 #include "tiny_asset.h"
 
 namespace spherechain::test {

@@ -121,7 +121,6 @@ TEST_CASE("info tells where the asset comes from") {
   CHECK(same(fit.phi1, parts.phi1));
   CHECK(same(fit.phi1_adjusted, parts.phi1_adjusted));
   CHECK(same(fit.phi2, parts.phi2));
-  CHECK(fit.chain_entries_table1 == parts.chain_entries_table1);
   CHECK(opened.view().refit_rule() == RefitRule::kMoments);
 }
 

@@ -21,9 +21,9 @@ function table(head, rows) {
 }
 
 function figures(validation) {
-  const { skin, chains, all_pairs: allPairs, out_of_scope: out, raw_pairs: raw, truth_pairs: truth } = validation;
+  const { skin, all_pairs: allPairs, out_of_scope: out, raw_pairs: raw, truth_pairs: truth } = validation;
   const row = (name, score) => [name, share(score.pair_recall), share(score.precision), number(score.reported_per_frame)];
-  const rows = [row('skin', skin), row('spheres, all pairs', allPairs), row('spheres, chains', chains)];
+  const rows = [row('skin', skin), row('spheres, all pairs', allPairs)];
   return [
     h('section', {}, h('h3', {}, 'Reported pairs'), table(['', 'recall', 'precision', 'a frame'], rows)),
     h(

@@ -2,13 +2,12 @@ import uPlot from 'uplot';
 import { css, h } from './dom.js';
 import { number } from './format.js';
 
-// Per frame: tests and pairs of the method's two ways, chain by chain and all pairs of spheres. The line is the frame shown; a click goes to a frame.
+// How many pairs of spheres touch in each frame, at both radii. The line is the frame shown; a click goes to a frame.
 
 const PADDING = 12; // pixels, as in style.css
 const TITLE = 28;
 const CHARTS = [
-  { title: 'Tests', series: [['chains', 'chains', (c) => c.chains.tests], ['all pairs', 'all-pairs', (c) => c.allPairs.tests]] },
-  { title: 'Pairs', series: [['chain by chain', 'chains', (c) => c.chains.pairs], ['all pairs', 'all-pairs', (c) => c.allPairs.pairs]] },
+  { title: 'Pairs', series: [['fit radius', 'fit-pairs', 'fit'], ['detect radius', 'all-pairs', 'detect']] },
 ];
 
 function options(series, size) {
@@ -39,7 +38,7 @@ function options(series, size) {
 
 function chart({ title, series }, store, model, size) {
   const frames = Array.from({ length: model.frameCount }, (_, i) => i);
-  const values = series.map(([, , read]) => read(model.costs));
+  const values = series.map(([, , kind]) => frames.map((frame) => model.pairCount(kind, frame)));
   const readouts = series.map(() => h('output', {}));
   const box = h('div', { class: 'chart' });
   const plot = new uPlot(options(series, size), [frames, ...values], box);
@@ -71,7 +70,7 @@ function chart({ title, series }, store, model, size) {
 }
 
 export function fillCharts(panel, store, model) {
-  if (model.costs === null || model.frameCount < 2) {
+  if (!model.hasPairs || model.frameCount < 2) {
     panel.append(h('p', { class: 'note' }, 'One frame only: nothing to draw over time.'));
     return;
   }

@@ -97,13 +97,6 @@ function readLook(look) {
   };
 }
 
-// Lists of a number a frame, as the charts want them.
-function readCosts({ chains, all_pairs: allPairs }) {
-  const list = (text) => [...decode(text, Uint32Array)];
-  const costs = ({ tests, pairs }) => ({ tests: list(tests), pairs: list(pairs) });
-  return { chains: costs(chains), allPairs: costs(allPairs) };
-}
-
 export function readModel(data) {
   const spheres = readSpheres(data);
   for (const { spheres: chain } of data.inspect.chains) {
@@ -165,7 +158,8 @@ export function readModel(data) {
     hasMethod: data.spheres !== undefined, // the page of `view`: what the paper's method finds
     fps: frames?.fps || 30,
     clips,
-    costs: frames?.chains ? readCosts(frames) : null,
+    hasPairs: Boolean(frames?.detect),
+    pairCount: (kind, frame) => touching[kind].of(frame).length / 2, // spheres that touch
     contacts: new Contacts(contactLists, partOf, partName, pairLists(frames?.penetrations, Float32Array, MEASURES)),
 
     // Where the page opens: the deepest fault before a change.
