@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <tuple>
 
 #include "clusters/clusters.h"
+#include "mesh/decompose.h"
 
 namespace spherechain::baker {
 namespace {
@@ -22,7 +22,7 @@ Vec3 main_axis(const Item* items, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     spread += (items[i].centroid - mean) * (items[i].centroid - mean).transpose();
   }
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
+  return principal_axes(spread).vectors.col(2);
 }
 
 void split(Item* items, std::size_t count, std::size_t clusters, std::vector<std::vector<Index>>& out) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "edits/region_axes.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
+
+#include "mesh/decompose.h"
 
 namespace spherechain::baker {
 namespace {
@@ -52,10 +53,10 @@ namespace {
 RegionAxes axes_of(const BodyFrame& frame, const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                    const Vec3& middle) {
   const Moments moments = moments_of(positions, triangles);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments.second);
+  const PrincipalAxes principal = principal_axes(moments.second);
   RegionAxes out;
-  const bool is_long = solver.eigenvalues()[2] > kLong * solver.eigenvalues()[1];
-  out.axis = is_long ? Vec3(solver.eigenvectors().col(2)) : frame.up;
+  const bool is_long = principal.values[2] > kLong * principal.values[1];
+  out.axis = is_long ? Vec3(principal.vectors.col(2)) : frame.up;
   double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
   for (const Triangle& t : triangles) {
     for (const Index v : t) {

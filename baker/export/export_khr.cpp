@@ -5,12 +5,11 @@
 // parts may follow one bone.
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
-
 #include "export/formats.h"
 #include "export/glb_json.h"
 #include "export/rest_nodes.h"
 #include "export/simple_volumes.h"
+#include "mesh/decompose.h"
 #include "mesh/error.h"
 #include "volumes/volume_json.h"
 #include "write/glb_mark.h"
@@ -45,7 +44,7 @@ PlacedShape shape_of_volume(const Volume& volume) {
         {"type", "capsule"},
         {"capsule", {{"height", axis.norm()}, {"radiusBottom", cone->radius_a}, {"radiusTop", cone->radius_b}}}};
     out.at.translation() = (cone->a + cone->b) / 2;
-    out.at.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), axis).toRotationMatrix();
+    out.at.linear() = turn_between(Vec3::UnitY(), axis).toRotationMatrix();
   } else {
     const auto& box = std::get<BoxVolume>(volume);
     out.shape = {{"type", "box"}, {"box", {{"size", json_of(Vec3(2 * box.half))}}}};
@@ -63,8 +62,7 @@ ordered_json node_at(const std::string& name, const Vec3& translation, const Eig
 
 bool is_resized(const RestNodes& rest, const ColliderBody& body, int node) {
   const Affine in_scene = rest.world(node) * body.to_bone;
-  return (Eigen::JacobiSVD<Eigen::Matrix3d>(in_scene.linear()).singularValues() - Vec3::Ones()).cwiseAbs().maxCoeff() >
-         1e-3;
+  return (singular_values(in_scene.linear()).values - Vec3::Ones()).cwiseAbs().maxCoeff() > 1e-3;
 }
 
 class PhysicsWriter {
@@ -152,9 +150,7 @@ class PhysicsWriter {
   // A rotation and a scale, and where the bone is stretched one more rotation in a node of its own.
   std::size_t add_frame(const ColliderBody& body, std::size_t bone) {
     const std::string name = kOwnName + body.name;
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(body.to_bone.linear(), Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Matrix3d u = svd.matrixU(), v = svd.matrixV();
-    Vec3 scale = svd.singularValues();
+    auto [u, scale, v] = singular_values(body.to_bone.linear());
     const bool is_even = scale(0) - scale(2) <= 1e-5 * scale(0) && body.to_bone.linear().determinant() > 0;
     if (is_even) {
       ordered_json node = node_at(name, body.to_bone.translation(), u * v.transpose());

@@ -11,6 +11,7 @@
 #include "export/glb_json.h"
 #include "export/rest_nodes.h"
 #include "export/simple_volumes.h"
+#include "mesh/decompose.h"
 #include "mesh/error.h"
 #include "volumes/volume_json.h"
 #include "write/glb_mark.h"
@@ -58,7 +59,7 @@ std::vector<ColliderGroup> groups_of(const Colliders& colliders, const SourceGlb
       losses.off = std::max(losses.off, taken.off);
       for (const Volume& one : taken.volumes) group.volumes.push_back(moved(one, body.to_bone));
     }
-    const Vec3 scale = Eigen::JacobiSVD<Eigen::Matrix3d>(body.to_bone.linear()).singularValues();
+    const Vec3 scale = singular_values(body.to_bone.linear()).values;
     if (std::abs(scale(0) - 1) > 1e-3 || std::abs(scale(2) - 1) > 1e-3) ++losses.scaled;
     if (scale(0) - scale(2) > 1e-3 * scale(0)) losses.is_stretched = true;
     out.push_back(std::move(group));

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "export/simple_volumes.h"
+#include "mesh/decompose.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
@@ -129,7 +130,7 @@ void join_bodies_of_a_bone(Colliders& colliders, std::vector<std::string>& notes
 
 Eigen::Quaterniond turn_to(int axis, const Vec3& direction) {
   if (direction.norm() <= 0) return Eigen::Quaterniond::Identity();
-  return Eigen::Quaterniond::FromTwoVectors(Vec3::Unit(axis), direction);
+  return turn_between(Vec3::Unit(axis), direction);
 }
 
 }  // namespace spherechain::baker

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Head, hands and feet, past neck, wrist and ankle where the paper stops. The march is the limbs', but fingers, toes
 // and a mouth leave no one ring of skin to touch: a sphere's surface halves the section's skin.
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +9,7 @@
 
 #include "fit/fit.h"
 #include "fit/march.h"
+#include "mesh/decompose.h"
 #include "mesh/ring.h"
 
 namespace spherechain::baker {
@@ -146,7 +146,7 @@ Vec3 longest_axis(const Mesh& skin, const Vec3& from) {
     for (const Index v : skin.triangles[t]) add(skin.positions[v], 1);
     add(triangle_centroid(skin, t), 9);
   }
-  const Vec3 axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moment).eigenvectors().col(2);
+  const Vec3 axis = principal_axes(moment).vectors.col(2);
   return axis.dot(centroid - from) < 0 ? Vec3(-axis) : axis;
 }
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fit/piece.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "mesh/area_samples.h"
+#include "mesh/decompose.h"
 #include "mesh/even_directions.h"
 
 namespace spherechain::baker {
@@ -173,11 +173,11 @@ std::optional<std::pair<Piece, Piece>> PieceFitter::halve(const Piece& piece) co
     const Vec3 d = samples_[i].point - centroid;
     covariance += samples_[i].area * d * d.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
+  const PrincipalAxes eigen = principal_axes(covariance);
   std::optional<std::pair<Piece, Piece>> best;
   for (const Eigen::Index column : {2, 1}) {
-    if (eigen.eigenvalues()[column] < kAsLong * eigen.eigenvalues()[2]) break;
-    const Vec3 axis = eigen.eigenvectors().col(column);
+    if (eigen.values[column] < kAsLong * eigen.values[2]) break;
+    const Vec3 axis = eigen.vectors.col(column);
     double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
     for (const std::uint32_t i : piece.samples) {
       const double along = samples_[i].point.dot(axis);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fix/part_joints.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <iterator>
+
+#include "mesh/decompose.h"
 
 namespace spherechain::baker {
 namespace {
@@ -17,7 +18,7 @@ PartJoints::PartJoints(const AnimatedAsset& animated, const TurnedClip& clip, co
     above_.push_back(part.bone < 0 ? std::vector<Index>{} : clip.above(static_cast<Index>(part.bone)));
   }
   for (const TurningJoint& joint : clip.joints()) {
-    prices_.push_back(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(joint.price).eigenvalues().minCoeff());
+    prices_.push_back(principal_axes(joint.price).values.minCoeff());
   }
   for (const Index foot : feet) {
     const std::vector<Index> all = clip.above_joint(foot);

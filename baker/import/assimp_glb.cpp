@@ -12,6 +12,7 @@
 
 #include "import/glb_file.h"
 #include "import/srgb.h"
+#include "mesh/decompose.h"
 
 namespace spherechain::baker {
 namespace {
@@ -69,8 +70,7 @@ class GlbOfScene {
     // Metres, Y up.
     Node top;
     top.name = "metres_y_up";
-    top.local.linear() =
-        source_.metres_per_unit * Eigen::Quaterniond::FromTwoVectors(source_.up_hint, Vec3::UnitY()).toRotationMatrix();
+    top.local.linear() = source_.metres_per_unit * turn_between(source_.up_hint, Vec3::UnitY()).toRotationMatrix();
     decompose(top);
     if (!top.local.matrix().isApprox(Affine::Identity().matrix())) {
       ordered_json node{{"name", top.name}};

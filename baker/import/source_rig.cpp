@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "mesh/decompose.h"
+
 namespace spherechain::baker {
 namespace {
 
@@ -59,7 +61,7 @@ void decompose(Node& node) {
   if ((node.scale.array() != 0).all()) {
     Eigen::Matrix3d turn = linear * node.scale.cwiseInverse().asDiagonal();
     // A unit matrix stays one: the quaternion of an unsheared matrix needs no orthogonalising.
-    if (!turn.isUnitary(1e-6)) turn = Eigen::Affine3d(turn).rotation();
+    if (!turn.isUnitary(1e-6)) turn = turn_in(turn);
     node.rotation = Eigen::Quaterniond(turn).normalized();
   }
 }

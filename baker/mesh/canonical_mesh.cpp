@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh/canonical_mesh.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
+
+#include "mesh/decompose.h"
 
 namespace spherechain::baker {
 namespace {
@@ -49,7 +50,7 @@ CanonicalMesh make_canonical(const Mesh& original) {
     const Vec3 d = (triangle_centroid(out.mesh, t) - out.centroid) / out.scale;
     covariance += triangle_area(out.mesh, t) / area * d * d.transpose();
   }
-  out.axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors();
+  out.axes = principal_axes(covariance).vectors;
   // An axis points to where the shape reaches farther out; the last one makes the frame right-handed.
   for (int k = 0; k < 2; ++k) {
     double skew = 0;

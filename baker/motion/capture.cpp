@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "mesh/decompose.h"
 #include "mesh/error.h"
 #include "motion/clip.h"
 
@@ -86,7 +87,7 @@ std::optional<Eigen::Matrix3d> standing_axes(const RoleJoints& joints) {
 // The least turn of what `before` has turned already that brings `bone` onto `target`.
 Eigen::Matrix3d turned_onto(const Eigen::Matrix3d& before, const Vec3& bone, const Vec3& target) {
   if (bone.norm() == 0 || target.norm() == 0) return before;
-  return Eigen::Quaterniond::FromTwoVectors(before * bone, target).toRotationMatrix() * before;
+  return turn_between(before * bone, target).toRotationMatrix() * before;
 }
 
 bool ends_with(const std::string& text, const char* end) {
@@ -196,7 +197,7 @@ void CaptureMotion::align(const RoleJoints& reference, const std::vector<Affine>
     }
     const Index node = reference.node[static_cast<std::size_t>(source)];
     followers_[j].source = static_cast<int>(node);
-    followers_[j].from_rest = world[node].rotation().transpose() * to_body.transpose() * turns[j];
+    followers_[j].from_rest = turn_in(world[node].linear()).transpose() * to_body.transpose() * turns[j];
   }
 }
 
@@ -214,7 +215,7 @@ std::vector<Affine> CaptureMotion::joints_at(double t) const {
     Affine joint = parent == nullptr ? Affine::Identity() : *parent;
     if (followers_[j].source >= 0) {
       joint.linear() =
-          to_body_ * world[static_cast<std::size_t>(followers_[j].source)].rotation() * followers_[j].from_rest;
+          to_body_ * turn_in(world[static_cast<std::size_t>(followers_[j].source)].linear()) * followers_[j].from_rest;
     }
     const Vec3 moved = parent == nullptr ? Vec3(anchor_ + travelled) : *parent * own.position;
     joint.translation() = moved - joint.linear() * pivot;

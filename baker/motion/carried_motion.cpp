@@ -6,6 +6,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "mesh/decompose.h"
 #include "mesh/error.h"
 #include "motion/clip.h"
 #include "motion/frame_times.h"
@@ -72,7 +73,7 @@ const Affine& parent_of(const Node& node, const std::vector<Affine>& world) {
   return node.parent < 0 ? kScene : world[static_cast<std::size_t>(node.parent)];
 }
 
-Eigen::Quaterniond rotation_of(const Affine& transform) { return Eigen::Quaterniond(transform.rotation()); }
+Eigen::Quaterniond rotation_of(const Affine& transform) { return Eigen::Quaterniond(turn_in(transform.linear())); }
 
 // A clip of another file on the rig's own nodes of the same names. A bone keeps its own length.
 class CarriedByName : public CarriedMotion {
@@ -287,7 +288,7 @@ class CarriedByRole : public CarriedMotion {
       const auto joint = static_cast<Index>(follower[n]);
       const Index node = body.joints.node[joint];
       const Affine moved = rig_.to_rest * world[node] * binds_[node].inverse();
-      after.emplace_back(motion_.source_rotation(joint, moved.rotation()));
+      after.emplace_back(motion_.source_rotation(joint, turn_in(moved.linear())));
       out.push_back(up.inverse() * after.back());
     }
     return out;

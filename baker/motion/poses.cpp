@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <set>
 
+#include "mesh/decompose.h"
+
 namespace spherechain::baker {
 namespace {
 
@@ -31,9 +33,8 @@ Affine movement_of(const Pose& pose, const std::string& joint, const Vec3& posit
 }
 
 Affine half_way(const Affine& a, const Affine& b, const Vec3& position) {
-  Eigen::Matrix3d turn_a, turn_b, stretch_a, stretch_b;
-  a.computeRotationScaling(&turn_a, &stretch_a);
-  b.computeRotationScaling(&turn_b, &stretch_b);
+  const auto [turn_a, stretch_a] = turn_and_stretch(a.linear());
+  const auto [turn_b, stretch_b] = turn_and_stretch(b.linear());
   Affine out;
   const Eigen::Quaterniond turn = Eigen::Quaterniond(turn_a).slerp(0.5, Eigen::Quaterniond(turn_b));
   out.linear() = turn.toRotationMatrix() * (0.5 * (stretch_a + stretch_b));

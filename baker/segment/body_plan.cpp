@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "segment/body_plan.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "mesh/decompose.h"
 #include "segment/branches.h"
 
 namespace spherechain::baker {
@@ -169,10 +169,10 @@ Vec3 lateral_axis(const Mesh& mesh, const Vec3& roughly) {
     const Vec3 d = triangle_centroid(mesh, t) - centroid;
     covariance += triangle_area(mesh, t) * d * d.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
+  const PrincipalAxes axes = principal_axes(covariance);
   const Vec3 tips = roughly.normalized();
   for (int k = 0; k < 3; ++k) {
-    const Vec3 axis = axes.eigenvectors().col(k);
+    const Vec3 axis = axes.vectors.col(k);
     if (std::abs(axis.dot(tips)) > 0.95) return axis.dot(tips) > 0 ? axis : Vec3(-axis);
   }
   return tips;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "segment/limbed_plan.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "mesh/decompose.h"
 #include "mesh/surface_query.h"
 #include "segment/branches.h"
 
@@ -176,8 +176,8 @@ class Finder {
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
     for (const Vec3& p : samples_) covariance += (p - centroid) * (p - centroid).transpose();
     std::vector<Plane> planes;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
-    for (int k = 0; k < 3; ++k) planes.push_back({centroid, axes.eigenvectors().col(k)});
+    const PrincipalAxes axes = principal_axes(covariance);
+    for (int k = 0; k < 3; ++k) planes.push_back({centroid, axes.vectors.col(k)});
     for (std::size_t i = 0; i < tips_.size(); ++i) {
       for (std::size_t j = i + 1; j < tips_.size(); ++j) {
         planes.push_back({centroid, (points_[tips_[i]] - points_[tips_[j]]).normalized()});
@@ -232,7 +232,7 @@ class Finder {
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
     const Vec3 centroid = surface_centroid(mesh_);
     for (const Vec3& p : line.points()) covariance += (p - centroid) * (p - centroid).transpose();
-    const Vec3 flat = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors().col(0);
+    const Vec3 flat = principal_axes(covariance).vectors.col(0);
     const Vec3 across = flat - flat.dot(plan.frame.up) * plan.frame.up;
     plan.frame.left = across.norm() > 0.1 ? Vec3(across.normalized()) : Vec3(plan.frame.up.unitOrthogonal());
     place(plan.frame);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "segment/part_tree.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+
+#include "mesh/decompose.h"
 
 namespace spherechain::baker {
 
@@ -24,11 +25,11 @@ Extent extent_of(const Mesh& mesh, const std::vector<Index>& triangles) {
       covariance += triangle_area(mesh, t) / (3 * area) * d * d.transpose();
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  const PrincipalAxes axes = principal_axes(covariance);
   for (std::size_t i = 0; i < 3; ++i) {
     const auto column = static_cast<Eigen::Index>(2 - i);
-    extent.axis[i] = solver.eigenvectors().col(column);
-    extent.spread[i] = std::sqrt(std::max(0.0, solver.eigenvalues()[column]));
+    extent.axis[i] = axes.vectors.col(column);
+    extent.spread[i] = std::sqrt(std::max(0.0, axes.values[column]));
   }
   return extent;
 }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "mesh/decompose.h"
+
 namespace spherechain::baker {
 namespace {
 
@@ -30,10 +32,7 @@ Eigen::Isometry3d rest_in_parent(const Colliders& colliders, std::size_t body) {
 
 Eigen::Isometry3d rigid_part(const Affine& of) {
   Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
-  Eigen::JacobiSVD<Eigen::Matrix3d> svd(of.linear(), Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d u = svd.matrixU();
-  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);  // a mirrored bone: as near as it gets
-  out.linear() = u * svd.matrixV().transpose();
+  out.linear() = turn_in(of.linear());  // of a mirrored bone: as near as it gets
   out.translation() = of.translation();
   return out;
 }

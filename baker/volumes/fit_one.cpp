@@ -2,9 +2,10 @@
 #include "volumes/fit_one.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "mesh/decompose.h"
 
 namespace spherechain::baker {
 namespace {
@@ -204,7 +205,7 @@ Eigen::Matrix3d main_axes(const std::vector<BodySample>& samples, const std::vec
     const Vec3 v = sample.point - mean;
     spread += sample.area * v * v.transpose();
   }
-  const Eigen::Matrix3d vectors = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
+  const Eigen::Matrix3d vectors = principal_axes(spread).vectors;
   Eigen::Matrix3d out;
   out << vectors.col(2), vectors.col(1), vectors.col(2).cross(vectors.col(1));
   return out;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/decompose.h"
+
 namespace spherechain::baker {
 namespace {
 
@@ -103,7 +105,7 @@ double volume_of(const Volume& volume) {
 
 Volume moved(const Volume& volume, const Eigen::AffineCompact3d& by) {
   const double scale = std::cbrt(std::abs(by.linear().determinant()));
-  const Eigen::Quaterniond turn(Eigen::AffineCompact3d(by).rotation());
+  const Eigen::Quaterniond turn(turn_in(by.linear()));
   Volume out = volume;
   if (auto* ball = std::get_if<BallVolume>(&out)) {
     *ball = {by * ball->center, scale * ball->radius};

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "capsules.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 #include <map>
 #include <numeric>
 
 #include "bind/bind.h"
+#include "mesh/decompose.h"
 
 namespace spherechain::baker {
 namespace {
@@ -86,7 +86,7 @@ Capsule fit_capsule(const std::vector<Vec3>& points, const std::vector<double>& 
   for (std::size_t i = 0; i < points.size(); ++i) {
     spread += areas[i] * (points[i] - center) * (points[i] - center).transpose();
   }
-  const Vec3 axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
+  const Vec3 axis = principal_axes(spread).vectors.col(2);
   double low = 0, high = 0;
   std::vector<double> distances;
   for (const Vec3& p : points) {

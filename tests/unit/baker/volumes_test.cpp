@@ -7,6 +7,7 @@
 
 #include "baked_human.h"
 #include "export/ignore_by_filter.h"
+#include "mesh/decompose.h"
 #include "volumes/bodies.h"
 #include "volumes/fit_body.h"
 #include "volumes/fit_volumes.h"
@@ -87,7 +88,7 @@ TEST_CASE("two volumes overlap where a point is in both") {
     for (const Volume& b : some_volumes()) {
       for (int i = 0; i < 8; ++i) {
         Eigen::Isometry3d at = Eigen::Isometry3d::Identity();
-        at.linear() = Eigen::Quaterniond::FromTwoVectors(random_direction(random), random_direction(random)).matrix();
+        at.linear() = turn_between(random_direction(random), random_direction(random)).matrix();
         at.translation() = Vec3(place(random), place(random), place(random));
         const Volume moved_b = moved(b, Affine(at));
         // Two convex volumes that overlap have a point of one's surface in the other, but where one holds the other.
