@@ -30,7 +30,7 @@ std::vector<std::string> names(const Regions& regions) {
 }
 
 const SourceMesh& quadruped() {
-  static const SourceMesh mesh = melt(quadruped_tubes(), 0.04);
+  static const SourceMesh mesh = melt(quadruped_tubes(), 0.035);
   return mesh;
 }
 
