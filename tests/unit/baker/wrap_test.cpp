@@ -254,7 +254,7 @@ TEST_CASE("a limb cut off and left open is still said to be missing" * doctest::
 }
 
 TEST_CASE("triangles that are no character are refused with a sentence" * doctest::test_suite("many bakes")) {
-  for (const auto& [count, size] : {std::pair<std::size_t, double>(1, 1), {2, 0.5}, {300, 0.03}, {60, 1}}) {
+  for (const auto& [count, size] : {std::pair<std::size_t, double>(1, 1), {300, 0.03}, {300, 1}}) {
     CAPTURE(count);
     CAPTURE(size);
     try {
@@ -325,7 +325,7 @@ TEST_CASE("surfaces that share an edge are taken apart there, and a hole is clos
 TEST_CASE("a body in 60 pieces with gaps, some flipped, is wrapped: alike in any unit, pose and order" *
           doctest::test_suite("many bakes")) {
   BrokenBody broken = intact_body();
-  cut_into_pieces(broken, 60, 0.05);
+  cut_into_pieces(broken, 60, 0.03);
   flip(broken, 0.05);
   const Closed before = check("60 pieces", broken, kWrappedWell);
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
