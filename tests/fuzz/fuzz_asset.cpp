@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // fuzz_asset [--stride N] [FILE.sphc ...]
 // Opens an asset cut short at every length and with every byte and word changed in several ways, and uses whatever
-// opens. Without files: a small synthetic asset with all optional parts. With --stride: only every N-th position.
+// opens. Without files: a small synthetic asset with all optional parts. With --stride: only every N-th position after the head.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -51,8 +51,14 @@ class Fuzzer {
   }
 
  private:
+  // The header and the table of sections are too small to leave a position out.
+  static constexpr std::size_t kHead = 512;
+  static std::size_t after(std::size_t i, std::size_t step, std::size_t stride) {
+    return i + (i < kHead ? step : step * stride);
+  }
+
   bool cut_short(std::size_t stride) {
-    for (std::size_t size = 0; size < bytes_.size(); size += stride) {
+    for (std::size_t size = 0; size < bytes_.size(); size = after(size, 1, stride)) {
       if (!open_and_use(size)) {
         return complain("cut short to", size);
       }
@@ -61,7 +67,7 @@ class Fuzzer {
   }
 
   bool change_bytes(std::size_t stride) {
-    for (std::size_t i = 0; i < bytes_.size(); i += stride) {
+    for (std::size_t i = 0; i < bytes_.size(); i = after(i, 1, stride)) {
       const std::uint8_t original = bytes_[i];
       Bytes values = {0x00, 0xFF, static_cast<std::uint8_t>(original + 1)};
       for (unsigned bit = 0; bit < 8; ++bit) {
@@ -81,7 +87,7 @@ class Fuzzer {
   // Offsets, counts, indices and floats are words: extremes no single byte reaches.
   bool change_words(std::size_t stride) {
     const auto size = static_cast<std::uint32_t>(bytes_.size());
-    for (std::size_t i = 0; i + 4 <= bytes_.size(); i += 4 * stride) {
+    for (std::size_t i = 0; i + 4 <= bytes_.size(); i = after(i, 4, stride)) {
       std::uint32_t original = 0;
       std::memcpy(&original, &bytes_[i], 4);
       for (const std::uint32_t value :

@@ -62,8 +62,8 @@ export async function visit(chromium, url) {
   return {
     noise,
     evaluate,
-    // The value of the expression, once it is true.
-    async wait(expression, seconds = 30) {
+    // The value of the expression, once it is true. Drawing by software takes long where other tests run beside.
+    async wait(expression, seconds = 120) {
       for (const end = Date.now() + 1000 * seconds; Date.now() < end;) {
         const value = await evaluate(expression).catch(() => null);  // the page may not be there yet
         if (value) return value;

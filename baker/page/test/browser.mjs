@@ -16,7 +16,7 @@ export const launch = (executablePath) =>
     ],
   });
 
-export const SCALE = 0.5;
+export const SCALE = 0.35;
 
 // Opens a page from disk; `noise` collects what no page may do: write to the console, fail, or ask for another file.
 export async function open(browser, file, { width = 1280, height = 720, scheme = 'light', init } = {}) {

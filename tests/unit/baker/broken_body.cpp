@@ -2,6 +2,7 @@
 #include "broken_body.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <random>
 
@@ -86,9 +87,17 @@ void cut_into_pieces(BrokenBody& body, std::size_t pieces, double shrink) {
   std::vector<double> count(pieces, 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Vec3 p = triangle_centroid(plain, t);
-    const auto nearest = std::min_element(
-        seeds.begin(), seeds.end(), [&](const Vec3& a, const Vec3& b) { return (a - p).norm() < (b - p).norm(); });
-    piece_of.push_back(static_cast<std::size_t>(nearest - seeds.begin()));
+    std::size_t nearest = 0;
+    double least = std::numeric_limits<double>::max();
+    for (std::size_t i = 0; i < seeds.size(); ++i) {  // in plain numbers, because tests are not optimised
+      const double *a = seeds[i].data(), *b = p.data();
+      const double off = (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
+      if (off < least) {
+        least = off;
+        nearest = i;
+      }
+    }
+    piece_of.push_back(nearest);
     middle[piece_of.back()] += p;
     ++count[piece_of.back()];
   }

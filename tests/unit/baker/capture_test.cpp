@@ -228,16 +228,19 @@ TEST_CASE("a joint that turns in a capture turns ours by the same angle about th
                                                 {"RightKnee", "right_knee"},
                                                 {"LeftAnkle", "left_ankle"},
                                                 {"LeftCollar", "left_clavicle"}};
+  const std::vector<Affine> rest = posed({{{0, 1, 0}, {}}, {{0, 1, 0}, {}}}, 0);
   for (const auto& [theirs, role] : ours) {
+    // Both axes of the trunk, and one of each other joint in turn.
+    const bool is_limb = role.starts_with("left_") || role.starts_with("right_");
     for (const int axis : {0, 2}) {
+      if (is_limb && axis == (role.size() % 2 == 0 ? 0 : 2)) continue;
       CAPTURE(theirs);
       const std::vector<Frame> frames{{{0, 1, 0}, {}}, {{0, 1, 0}, {{theirs, {axis, 40}}}}};
-      const std::vector<Affine> rest = posed(frames, 0), turned = posed(frames, 1);
+      const std::vector<Affine> turned = posed(frames, 1);
       const Eigen::Matrix3d expected = Eigen::AngleAxisd(40 * kDegree, Vec3::Unit(axis)).toRotationMatrix();
       CHECK(turn_between(rest, turned, role).isApprox(expected, 1e-5));
       const char* other = role[0] == 'l' ? "right_elbow" : "left_knee";
-      if (role != "pelvis" && (role[0] == 'l' || role[0] == 'r'))
-        CHECK(turn_between(rest, turned, other).isIdentity(1e-5));
+      if (is_limb) CHECK(turn_between(rest, turned, other).isIdentity(1e-5));
     }
   }
 }

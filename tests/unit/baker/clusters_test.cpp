@@ -211,9 +211,9 @@ TEST_CASE("without morphs a sphere's vertices are near its hull, as near as the 
     const spherechain::baker::OpenAsset asset = open_asset_of(*bake);
     const spherechain::Surface& surface = asset.surface();
     REQUIRE(surface.hulls.size == asset->spheres().size);
-    for (int pose = 0; pose < 12; ++pose) {
+    for (int pose = 0; pose < 6; ++pose) {
       const Matrices matrices = spherechain::test::random_pose(
-          asset->bone_count(), spherechain::test::kPoseKinds[static_cast<std::size_t>(pose) % 6], 1, random);
+          asset->bone_count(), spherechain::test::kPoseKinds[static_cast<std::size_t>(pose)], 1, random);
       const std::vector<Vec3> vertices = skinned(*bake, matrices, {});
       std::vector<Eigen::Matrix<double, 3, 4>> bones;
       for (const auto& m : matrices) {
@@ -321,7 +321,7 @@ TEST_CASE("clusters.triangles is how many triangles a cluster has at most" * doc
 
 TEST_CASE("clusters.branching is how many children a node of too many triangles is divided into" *
           doctest::test_suite("many bakes")) {
-  for (const std::size_t branching : {2, 4, 8}) {
+  for (const std::size_t branching : {2, 8}) {
     CAPTURE(branching);
     const Bake bake =
         rebake(baked_person(),
@@ -353,7 +353,7 @@ TEST_CASE("over poses and clips the runtime puts every vertex where skinning doe
     const PoseMotion poses =
         read_pose_motion(std::string(SPHERECHAIN_SAMPLES) + "/poses/" + name, baked_human().joints);
     const BezierMotion motion(baked_human().joints, baked_human().regions.frame, poses);
-    for (int i = 0; i < 4; ++i) frames.push_back(motion.at(i / 3.0));
+    for (int i = 0; i < 2; ++i) frames.push_back(motion.at(0.5 + i / 2.0));
   }
   const Checked human = check_frames(baked_human(), frames);
   report("human, poses", human, baked_human().regions.frame.height);
@@ -361,7 +361,7 @@ TEST_CASE("over poses and clips the runtime puts every vertex where skinning doe
   frames.clear();
   for (const Clip& clip : baked_person().character.rig.clips) {
     const ClipMotion motion(baked_person().character.rig, {&clip});
-    for (int i = 0; i < 5; ++i) frames.push_back(motion.at(i / 4.0));
+    for (int i = 0; i < 3; ++i) frames.push_back(motion.at(i / 2.0));
   }
   const Checked person = check_frames(baked_person(), frames);
   report("person, clips", person, baked_person().regions.frame.height);

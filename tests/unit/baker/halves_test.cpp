@@ -50,7 +50,7 @@ Hand hand() {
 }
 
 SourceMesh mesh_of(const Hand& hand) {
-  SourceMesh mesh = melt(hand.tubes, 0.03);
+  SourceMesh mesh = melt(hand.tubes, 0.045);
   for (std::size_t i = 0; i < hand.tubes.size(); ++i) {
     Node node;
     node.name = hand.names[i];

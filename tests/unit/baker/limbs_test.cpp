@@ -30,7 +30,7 @@ std::vector<std::string> names(const Regions& regions) {
 }
 
 const SourceMesh& quadruped() {
-  static const SourceMesh mesh = melt(quadruped_tubes(), 0.03);
+  static const SourceMesh mesh = melt(quadruped_tubes(), 0.035);
   return mesh;
 }
 
@@ -130,7 +130,7 @@ TEST_CASE("a facing direction turns a quadruped round: head is tail and left is 
 TEST_CASE("what the body is taken for can be said: a human goes on all fours, and a quadruped is no biped" *
           doctest::test_suite("many bakes")) {
   CHECK(reason_against(quadruped(), BodyKind::kBiped).find("biped") != std::string::npos);
-  CHECK(reason_against(melt(six_legged_tubes(), 0.03), BodyKind::kQuadruped).find("quadruped") != std::string::npos);
+  CHECK(reason_against(melt(six_legged_tubes(), 0.045), BodyKind::kQuadruped).find("quadruped") != std::string::npos);
   SegmentSettings settings;
   settings.body = BodyKind::kQuadruped;
   const Regions regions = *segment_by_shape(human().character, settings);
@@ -141,7 +141,7 @@ TEST_CASE("what the body is taken for can be said: a human goes on all fours, an
 
 TEST_CASE("a six-legged creature has three pairs from the front, each where it leaves the trunk" *
           doctest::test_suite("many bakes")) {
-  const SourceMesh mesh = melt(six_legged_tubes(), 0.03);
+  const SourceMesh mesh = melt(six_legged_tubes(), 0.045);
   const Regions regions = segmented(mesh);
   REQUIRE(names(regions) == std::vector<std::string>{"left_leg_1", "right_leg_1", "left_leg_2", "right_leg_2",
                                                      "left_leg_3", "right_leg_3", "torso"});
@@ -159,7 +159,7 @@ TEST_CASE("a six-legged creature has three pairs from the front, each where it l
 }
 
 TEST_CASE("a snake is one tubular chain from the tail's tip to the head" * doctest::test_suite("many bakes")) {
-  const SourceMesh mesh = melt(snake_tubes(), 0.02);
+  const SourceMesh mesh = melt(snake_tubes(), 0.03);
   const Regions regions = segmented(mesh);
   REQUIRE(names(regions) == std::vector<std::string>{"body"});
   CHECK_FALSE(regions.has_torso);
@@ -200,7 +200,7 @@ TEST_CASE("a human with a long tail keeps arms and legs, and the tail is a limb"
     tubes.push_back({{side * 0.1, 0.92, 0}, {side * 0.16, 0.08, 0}, 0.08, 0.05});
     tubes.push_back({{side * 0.16, 0.06, 0}, {side * 0.16, 0.05, 0.16}, 0.05, 0.04});
   }
-  const auto melted = melt(tubes, 0.03);
+  const auto melted = melt(tubes, 0.045);
   const Regions regions = segmented(melted);
   REQUIRE(names(regions) ==
           std::vector<std::string>{"left_arm", "right_arm", "left_leg", "right_leg", "tail", "torso"});
@@ -215,7 +215,7 @@ TEST_CASE("a human with a long tail keeps arms and legs, and the tail is a limb"
   CHECK(reason_against(melted, settings).find("facing direction") != std::string::npos);
   // Nor is it said of one without head and tail that these are missing.
   tubes.erase(tubes.begin() + 1, tubes.begin() + 4);
-  CHECK(reason_against(melt(tubes, 0.03), settings).find("facing direction") != std::string::npos);
+  CHECK(reason_against(melt(tubes, 0.045), settings).find("facing direction") != std::string::npos);
 }
 
 TEST_CASE("a rigged beast in open pieces bakes with four legs and a tail, and left is left") {

@@ -2,6 +2,7 @@
 #include "motion/poses.h"
 
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -60,23 +61,39 @@ bool says(const std::string& text, const std::string& part) { return text.find(p
 std::vector<Index> distal_vertices(std::uint8_t region) {
   const RiggedHuman& h = rigged_human();
   const std::string side = region % 2 == 0 ? "left_" : "right_";
+  const std::size_t upper = h.joint(side + (region < 2 ? "elbow" : "hip"));
+  const std::size_t lower = h.joint(side + (region < 2 ? "wrist" : "knee"));
   std::vector<Index> vertices;
   for (Index v = 0; v < h.weights.size(); ++v) {
-    const bool own = region < 2 ? h.weight(v, side + "elbow") + h.weight(v, side + "wrist") > 0.5
-                                : h.weight(v, side + "hip") + h.weight(v, side + "knee") > 0.9;
-    if (own) vertices.push_back(v);
+    double sum = 0;
+    for (std::size_t k = 0; k < kMaxInfluences; ++k) {
+      const Index joint = h.weights[v].joint[k];
+      if (joint == upper || joint == lower) sum += h.weights[v].weight[k];
+    }
+    if (sum > (region < 2 ? 0.5 : 0.9)) vertices.push_back(v);
   }
   return vertices;
 }
 
-// 1 inside, 0 outside, between near the region's open ends.
+// 1 inside, 0 outside, between near the region's open ends. In plain numbers, because tests are not optimised.
 double winding_number(const Mesh& mesh, const std::vector<Index>& triangles, const Vec3& p) {
   double angle = 0;
   for (const Index t : triangles) {
-    const Triangle& v = mesh.triangles[t];
-    const Vec3 a = mesh.positions[v[0]] - p, b = mesh.positions[v[1]] - p, c = mesh.positions[v[2]] - p;
-    const double x = a.norm(), y = b.norm(), z = c.norm();
-    angle += 2 * std::atan2(a.dot(b.cross(c)), x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y);
+    double to[3][3], far[3], cosines[3];
+    for (int i = 0; i < 3; ++i) {
+      const double* corner = mesh.positions[mesh.triangles[t][static_cast<std::size_t>(i)]].data();
+      for (int k = 0; k < 3; ++k) to[i][k] = corner[k] - p.data()[k];
+      far[i] = std::sqrt(to[i][0] * to[i][0] + to[i][1] * to[i][1] + to[i][2] * to[i][2]);
+    }
+    const auto &a = to[0], &b = to[1], &c = to[2];
+    for (int i = 0; i < 3; ++i) {
+      const auto &from = to[i], &next = to[(i + 1) % 3];
+      cosines[i] = from[0] * next[0] + from[1] * next[1] + from[2] * next[2];
+    }
+    const double volume = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+                          a[2] * (b[0] * c[1] - b[1] * c[0]);
+    angle += 2 * std::atan2(volume, far[0] * far[1] * far[2] + cosines[0] * far[2] + cosines[1] * far[0] +
+                                        cosines[2] * far[1]);
   }
   return angle / (4 * std::numbers::pi);
 }
@@ -89,14 +106,18 @@ double depth(const Mesh& posed, std::uint8_t limb, std::uint8_t region) {
     if (human().regions.of_triangle[t] == region) triangles.push_back(t);
   }
   const SurfaceQuery surface(posed, triangles);
-  double deepest = 0;
+  std::vector<std::pair<double, Index>> behind;
   for (const Index v : distal_vertices(limb)) {
     const Vec3& p = posed.positions[v];
     const SurfaceHit hit = surface.closest(p);
-    const bool behind = (p - hit.point).dot(triangle_cross(posed, hit.triangle)) < 0;
-    if (behind && hit.distance > deepest && winding_number(posed, triangles, p) > 0.5) deepest = hit.distance;
+    if ((p - hit.point).dot(triangle_cross(posed, hit.triangle)) < 0) behind.emplace_back(hit.distance, v);
   }
-  return deepest / h.frame.height;
+  // The deepest first, because a winding number takes long.
+  std::sort(behind.rbegin(), behind.rend());
+  for (const auto& [distance, v] : behind) {
+    if (winding_number(posed, triangles, posed.positions[v]) > 0.5) return distance / h.frame.height;
+  }
+  return 0;
 }
 
 }  // namespace

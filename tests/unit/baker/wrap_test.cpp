@@ -220,13 +220,6 @@ TEST_CASE("a body that is cracked, split, flipped and full of holes at once is r
   check("all of it", broken, kRepairedWell);
 }
 
-TEST_CASE("a body in 400 pieces with gaps between them, some flipped, is wrapped" * doctest::test_suite("many bakes")) {
-  BrokenBody broken = intact_body();
-  cut_into_pieces(broken, 400, 0.05);
-  flip(broken, 0.05);
-  check("400 pieces", broken, kWrappedWell);
-}
-
 TEST_CASE("an inner surface changes nothing that is seen from outside" * doctest::test_suite("many bakes")) {
   BrokenBody broken = intact_body();
   add_inner_surface(broken, 0.002);
@@ -261,7 +254,7 @@ TEST_CASE("a limb cut off and left open is still said to be missing" * doctest::
 }
 
 TEST_CASE("triangles that are no character are refused with a sentence" * doctest::test_suite("many bakes")) {
-  for (const auto& [count, size] : {std::pair<std::size_t, double>(1, 1), {2, 0.5}, {300, 0.03}, {300, 1}}) {
+  for (const auto& [count, size] : {std::pair<std::size_t, double>(1, 1), {300, 0.03}, {300, 1}}) {
     CAPTURE(count);
     CAPTURE(size);
     try {
@@ -329,10 +322,11 @@ TEST_CASE("surfaces that share an edge are taken apart there, and a hole is clos
   CHECK(std::count(stitched.of_triangle.begin(), stitched.of_triangle.end(), kNoIndex) == 1);
 }
 
-TEST_CASE("a body in 60 pieces is wrapped, and what is found depends on no unit, pose or order" *
+TEST_CASE("a body in 60 pieces with gaps, some flipped, is wrapped: alike in any unit, pose and order" *
           doctest::test_suite("many bakes")) {
   BrokenBody broken = intact_body();
   cut_into_pieces(broken, 60, 0.03);
+  flip(broken, 0.05);
   const Closed before = check("60 pieces", broken, kWrappedWell);
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   const Vec3 moved(300, -200, 500);

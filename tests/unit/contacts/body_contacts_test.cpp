@@ -67,6 +67,7 @@ struct Two {
 BodyContactJob meeting_of(const Pose& a, const Pose& b, Target target = SC_TARGET_BEST) {
   BodyContactJob job;
   job.a.asset = job.b.asset = moving_human().asset.handle();
+  job.a.skin_table = job.b.skin_table = human_skin_table();
   job.a.pose = a;
   job.b.pose = b;
   job.target = target;
@@ -85,7 +86,7 @@ TEST_CASE("two bodies' contacts are CGAL's wherever they stand: from bones, from
           doctest::test_suite("long runs")) {
   std::mt19937 random(24);
   std::size_t total = 0, apart = 0;
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 16; ++i) {
     CAPTURE(i);
     const Two two(random);
     total += two.expected.size();
@@ -98,6 +99,11 @@ TEST_CASE("two bodies' contacts are CGAL's wherever they stand: from bones, from
         CHECK(triangle_pairs(met(meeting_of(of_a[a], of_b[b], target))) == two.expected);
       }
     }
+    if (two.expected.empty()) continue;
+    // A table that is not prepared is made for the call: the contacts are the same.
+    BodyContactJob unprepared = meeting_of(of_a[0], of_b[1]);
+    (i % 2 == 0 ? unprepared.a : unprepared.b).skin_table = nullptr;
+    CHECK(triangle_pairs(met(unprepared)) == two.expected);
   }
   CHECK(total > 1000);
   CHECK(apart > 0);
@@ -212,7 +218,7 @@ TEST_CASE("moved along the way out, a part of body b no longer meets the part of
 TEST_CASE("as two bodies go apart their contacts are CGAL's to the last few" * doctest::test_suite("long runs")) {
   std::mt19937 random(28);
   std::size_t few = 0;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 30; ++i) {
     const Two two(random);
     std::size_t left = two.expected.size();
     for (int step = 1; step <= 12 && left > 0; ++step) {
@@ -230,5 +236,5 @@ TEST_CASE("as two bodies go apart their contacts are CGAL's to the last few" * d
       few += !expected.empty() && expected.size() < 60 ? 1 : 0;
     }
   }
-  CHECK(few > 5);
+  CHECK(few > 3);
 }

@@ -93,7 +93,7 @@ TEST_CASE("contacts of neighbours are CGAL's, from vertices and from bones, and 
           doctest::test_suite("long runs")) {
   const MovingHuman& human = moving_human();
   std::size_t total = 0, within = 0;
-  for (std::size_t i = 0; i < human.frames.size(); i += 3) {
+  for (std::size_t i = 0; i < human.frames.size(); i += 6) {
     CAPTURE(human.frames[i].name);
     const MovingHuman::Frame frame = skinned(human.frames[i]);
     const baker::FrameTruth truth = truth_of(frame.vertices);
@@ -118,7 +118,7 @@ TEST_CASE("contacts of neighbours are CGAL's, from vertices and from bones, and 
       }
     }
   }
-  CHECK(total > 500);
+  CHECK(total > 300);
   CHECK(within > 500);
 }
 
