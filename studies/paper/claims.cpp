@@ -41,7 +41,7 @@ Verdict judge_adjustment(const Results& results) {
                       mean(before), mean(after), count_if_positive(gain), gain.size(), least(gain), most(gain))};
 }
 
-// Of spheres split at the median eccentricity: where phi1' is better among the eccentric, phi2 among the round.
+// Spheres split at the median eccentricity: where phi1' is better among the eccentric, phi2 among the round.
 struct Split {
   std::size_t eccentric = 0, eccentric_right = 0, round = 0, round_right = 0, round_worse = 0;
   double correlation = 0;
@@ -316,7 +316,7 @@ Table compare_readings(const Results& results) {
   return out;
 }
 
-Table judge_claims(const Results& results) {
+Table check_claims(const Results& results) {
   Table out{"claims", {"id", "where", "paper_says", "rule", "verdict", "finding"}, {}};
   const auto add = [&](const char* id, const char* where, const char* says, const char* rule, Verdict verdict) {
     out.add({id, where, says, rule, verdict.verdict, verdict.finding});
@@ -366,11 +366,11 @@ Table judge_claims(const Results& results) {
   add("gpu", "section 6, Figure 16", "On the GPU M1 takes less time than M2.",
       "At the two sphere counts nearest to 46 and 80, medians over the frames: M1's faster kernel at least a twentieth "
       "below M2's, the kernels alone and with launch and copies; in part: at one count, or by one of the times.",
-      judge_gpu_m1_faster(gpu));
+      gpu_m1_is_faster(gpu));
   add("gpu_many", "section 6", "Few spheres do not exploit the parallelism: about 10,000 or more are needed.",
       "The GPU, launch and copies included, behind one core of the CPU at every count below some 10,000 and ahead "
       "there; in part: behind at the fewest spheres, ahead at the most.",
-      judge_gpu_needs_many(gpu));
+      gpu_needs_many(gpu));
   return out;
 }
 

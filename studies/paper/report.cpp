@@ -50,7 +50,8 @@ Section gpu_section(const Results& results) {
     return out;
   }
   out.text = {
-      "The paper's own mappings (`studies/cuda`) for one character. M2: a thread tests one sphere against the whole mesh "
+      "The paper's own mappings (`studies/cuda`) for one character. M2: a thread tests one sphere against the whole "
+      "mesh "
       "(m^2 tests). M1: a thread takes one chain, or one sphere of a chain, and tests the whole chain (n_c n^2 tests). "
       "Measured on: " +
           results.gpu.machine + ", by `" + results.gpu.command +
@@ -125,7 +126,7 @@ std::vector<Section> sections(const Results& results) {
   out.push_back({"What the paper claims",
                  {"A rule computes each verdict from the run's tables. The rule stands beside it."},
                  {},
-                 {show(judge_claims(results), {{"paper_says", "The paper says"},
+                 {show(check_claims(results), {{"paper_says", "The paper says"},
                                                {"verdict", "Verdict"},
                                                {"finding", "Finding"},
                                                {"rule", "Rule"},
@@ -292,7 +293,7 @@ std::string markdown(const ShownTable& table) {
 }
 
 std::vector<Table> tables(const Results& results) {
-  return {judge_claims(results),     derive_defaults(results),
+  return {check_claims(results),     derive_defaults(results),
           results.accuracy.rays,     results.accuracy.spheres,
           results.sweep.accuracy,    results.running_time,
           compare_readings(results), results.sweep.sweep,

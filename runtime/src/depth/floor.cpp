@@ -39,7 +39,7 @@ struct Height {
   double above;
 };
 
-// What of a part's skin is below.
+// The piece of a part's skin that is below the ground.
 class Below {
  public:
   Below(const Double3& up, double handedness) : up_(up), handedness_(handedness) {}

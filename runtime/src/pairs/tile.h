@@ -87,7 +87,7 @@ struct Tile {
 
 struct FoundPairs;
 
-// What a caller wants of the pairs that touch.
+// The form in which a caller wants the pairs that touch.
 class PairOutput {
  public:
   PairOutput(Span<Pair> list, Span<std::uint64_t> bits) : list_(list), bits_(bits) {}
