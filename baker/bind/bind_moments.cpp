@@ -13,7 +13,7 @@ namespace {
 using Vec4 = Eigen::Vector4d;
 using Matrix4 = Eigen::Matrix4d;
 
-// What each bone adds to each pivot of a sphere.
+// Contribution of each bone to each pivot of a sphere.
 using PivotParts = std::vector<std::map<Index, Vec4>>;
 
 std::vector<PivotParts> parts_of(const Character& character, const Binding& binding, const BoneBinding& bones,

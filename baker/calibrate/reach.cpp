@@ -68,7 +68,7 @@ struct Pool {
   }
 };
 
-// What each pair is judged by: its own samples, what it is at rest, and what it borrows.
+// Evidence for each pair: its own samples, its state at rest, and samples borrowed from pairs of the same spheres.
 std::vector<Evidence> evidence_of(const std::vector<SampledPair>& pairs,
                                   const std::vector<std::optional<double>>& at_rest, std::size_t sphere_count) {
   std::vector<Evidence> evidence(pairs.size());

@@ -220,7 +220,7 @@ void ClipChecker::show(ClipCheck& out, const Frames& frames, const ClipFrames& c
   }
 }
 
-// Of faults alone, in the frames where they are one.
+// Sums up faults only, over the frames in which they are faults.
 std::vector<HeatSpot> ClipChecker::heat_of(const Frames& frames) const {
   struct Heat {
     HeatSpot spot;

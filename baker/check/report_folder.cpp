@@ -63,7 +63,7 @@ ordered_json page_event(const JudgedEvent& judged) {
 
 std::string data_name(const std::string& key) { return "data/" + key.substr(0, 2) + "/" + key.substr(2, 30); }
 
-// Of the worst fault that no rule excuses, as the library's row names it; else of the clip's first frame.
+// The frame of the worst fault that no rule excuses, as in the library's row; else the clip's first frame.
 std::size_t picture_of(const JudgedClip& clip) {
   const JudgedEvent* worst = nullptr;
   const auto badness = [](const JudgedEvent& e) { return std::pair(e.event.kind, e.event.depth_mm); };

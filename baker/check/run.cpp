@@ -260,7 +260,7 @@ class Run {
     };
     task.ended = [this, &tasks, queue, at](const Ending& ending) {
       check_store(ending);
-      // What it was at when it failed does not keep the others from being checked.
+      // A clip that makes the process fail does not keep the other clips from being checked.
       if (*at) {
         const QueuedClip& queued = queue->clips[**at];
         const std::string& failure = ending.failure;

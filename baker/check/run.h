@@ -37,7 +37,7 @@ struct RunOptions {
   Shard shard;
 };
 
-// What a check calls the clips in a character's file.
+// Names that a check gives to the clips of a character's file.
 std::vector<std::string> unique_clip_names(const SourceRig& rig);
 
 // How far a run is.

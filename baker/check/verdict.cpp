@@ -48,7 +48,7 @@ class Judge {
       const KnownEvent& one = all_[i];
       if (!is_same(one, out.event, fps)) continue;
       there.insert(i);
-      // Of several the most that was approved.
+      // If several approved events match, the deepest one counts.
       if (is_worse(one, out.event)) {
         if (out.state != EventState::kNew) continue;
         if (one.depth_mm >= out.before_mm) out.known = i;

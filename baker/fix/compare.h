@@ -6,7 +6,7 @@
 
 namespace spherechain::baker {
 
-// What feet and hands do that they did not do before.
+// Movements of feet and hands that the source clip does not have.
 struct Comparison {
   double feet_mm = 0, feet_degrees = 0;  // that a foot moves and turns, at most
   double jerk_ratio = 1;                 // of the wrists, where they move by more than 3 mm: after to before

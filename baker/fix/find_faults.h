@@ -16,7 +16,7 @@
 
 namespace spherechain::baker {
 
-// What two body parts do in a frame, or between two.
+// Penetration of two body parts in a frame, or between two frames.
 struct Meeting {
   double frame;
   Penetration found;  // measured quickly: its volume is not known
@@ -33,7 +33,7 @@ class FaultFinder {
 
   // In the order of the frames, then by parts.
   std::vector<Meeting> in_frames(const std::vector<double>& frames, const Turns& turns);
-  // Of poses that are tried, measured quickly: pairs of two parts of which one `moves`.
+  // Measures candidate poses quickly. Only pairs of parts of which one `moves` are measured.
   std::vector<std::vector<Meeting>> in_poses(const std::vector<TriedPose>& poses, const std::vector<char>& moves);
   // Faults on the way from each of these whole frames to the next that are none in either; where they are about
   // deepest.
@@ -47,7 +47,7 @@ class FaultFinder {
     std::vector<Meeting> found;
   };
   using SeenFrames = std::map<double, Seen>;
-  // Those that have to be looked at again.
+  // Frames that have to be measured again, because joints turned.
   static std::vector<double> changed(SeenFrames& seen, const std::vector<std::pair<double, std::vector<Vec3>>>& now);
   template <typename Frames>
   static std::vector<Meeting> found_in(const SeenFrames& seen, const Frames& frames);

@@ -138,7 +138,7 @@ class Fixer {
     return name;
   }
 
-  // Of the joints that the recording has, too: no other may turn.
+  // Roles of the joints that the recording contains. No other joint may turn.
   Roles recorded_roles(const CarriedMotion& carried) const {
     const std::vector<Index> nodes = carried.recorded_nodes();
     const std::set<Index> recorded(nodes.begin(), nodes.end());

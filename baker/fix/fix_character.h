@@ -12,7 +12,7 @@
 
 namespace spherechain::baker {
 
-// What to mend of a character, and what to leave.
+// Selects the clips and faults of a character that are fixed.
 struct FixJob {
   std::string input;
   std::string clip;                                 // of its own: name or number; empty: all

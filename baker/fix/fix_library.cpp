@@ -23,7 +23,7 @@ bool can_be_mended(const JudgedEvent& judged) {
          event.parts[0] != event.parts[1];
 }
 
-// What to mend of each character; nothing where `numbers` and `recordings` are empty.
+// Jobs for all characters of a library. A job without `numbers` and `recordings` does nothing.
 std::vector<FixJob> jobs_of(const std::vector<LibraryCharacter>& library, const Verdict& verdict,
                             const Baseline& baseline) {
   std::vector<FixJob> out(library.size());

@@ -36,7 +36,7 @@ std::vector<double> turns_of(const MendedClip& clip) {
   return out;
 }
 
-// Of all frames.
+// The largest turn over all frames and joints, in degrees.
 double most_of(const MendedClip& clip) {
   double most = 0;
   for (const Vec3& turn : clip.mend.turns) most = std::max(most, turn.norm());

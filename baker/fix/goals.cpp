@@ -60,7 +60,7 @@ bool Goals::is_let_be(const Meeting& meeting) const {
   const double may_be = allowed(meeting);
   if (may_be < 0) return false;
   const Penetration& p = meeting.found;
-  // What is no fault and not to part is let be: folds and touches come and go with a joint.
+  // Pairs that are no faults and were not separated are left alone: folds and touches come and go with a joint.
   if (!is_fault(p.kind) || p.part == p.other) return true;
   const double slack = (p.kind == SC_CLASS_DEEP_FOLD ? kFoldDeeper : kDeeper) / mm_ + kDeeperShare * may_be;
   return double{p.measures.depth} - may_be <= slack;

@@ -17,7 +17,7 @@ inline MeetingPlace place_of(const Meeting& meeting) {
   return {meeting.frame, meeting.found.part, meeting.found.other};
 }
 
-// What a mend is to reach: the events of a clip, and how deep each two parts may be in each other in a frame.
+// Targets of a fix: a clip's events, and the depth that each two parts may have in each frame.
 class Goals {
  public:
   // `before`: what the clip's frames have. `leave` says which events are to be left as they are.
@@ -32,7 +32,7 @@ class Goals {
            place.frame <= event.to + 1;
   }
 
-  // What the clip's frames had.
+  // Penetrations in the frames of the source clip.
   const std::map<MeetingPlace, Penetration>& before() const { return before_; }
   const Penetration* before(const MeetingPlace& place) const;  // null where the two did not meet
   const MendedEvent* event_at(const MeetingPlace& place) const;

@@ -19,7 +19,7 @@ std::string role_of(const Roles& roles, Index node) {
   return node < roles.of_node.size() ? without_side(roles.of_node[node].role) : "";
 }
 
-// What a radian costs. Joints near the trunk carry more with them.
+// Cost of a radian. Joints near the trunk carry more, so they cost more.
 double price_of(const std::string& role) {
   static const std::map<std::string, double> kPrices{{"shoulder", 1}, {"elbow", 1}, {"wrist", 2},  {"clavicle", 4},
                                                      {"neck", 6},     {"head", 6},  {"spine", 60}, {"chest", 60},

@@ -13,7 +13,7 @@ namespace spherechain::baker {
 // that carries all others. Elbows and knees give way along their hinge, as the clip bends it.
 std::vector<TurningJoint> turning_joints(const SourceRig& rig, const Roles& roles, const Clip& clip);
 
-// Those of them with that role, on either side: "ankle".
+// Joints with this role, on either side. Example: "ankle".
 std::vector<Index> joints_of_role(const std::vector<TurningJoint>& joints, const Roles& roles, const std::string& role);
 
 }  // namespace spherechain::baker

@@ -279,7 +279,7 @@ class Mender {
     return true;
   }
 
-  // Of all that lies together in time, the round that left least; of equal ones the last.
+  // For each run of frames, takes the round with the least penetration; among equal rounds the last one.
   void take_the_best_rounds() {
     for (MendedEvent& event : goals_.events) {
       if (event.outcome == Outcome::kOverBudget) event.outcome = Outcome::kReduced;
@@ -304,7 +304,7 @@ class Mender {
     }
   }
 
-  // What shakes is worse than what is in each other: it is smoothed, and joints that shake nevertheless turn back.
+  // Shaking is worse than penetrating: smooths the corrections, and fades them out at joints that still shake.
   void calm_down() {
     for (const std::vector<std::size_t>& span : spans_of(in_window_, loops_)) {
       std::set<Index> joints = shaking_joints(clip_, span, turns_, height_);

@@ -45,7 +45,7 @@ struct Mend {
   Comparison compared;
   // Pairs of parts in a frame, pushed, at most 10 mm deep before; of these, those within 5 mm of each other after.
   int shallow = 0, still_near = 0;
-  // Of faults that were to be mended, as far as their contours close; cm3, summed over frames.
+  // Penetrated volume of the selected faults, as far as their contours close: cm3, summed over frames.
   double volume_before = 0, volume_after = 0;
   int rounds = 0;
 

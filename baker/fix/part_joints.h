@@ -18,9 +18,9 @@ class PartJoints {
   PartJoints(const AnimatedAsset& animated, const TurnedClip& clip, const std::vector<Index>& feet);
 
   const std::vector<Index>& above(std::uint32_t part) const { return above_[part]; }
-  // Those that move one of two parts and not the other, of the cheap ones, and none that a foot hangs on.
+  // Cheap joints that move only one of the two parts. Joints above a foot are left out.
   std::set<Index> between(std::uint32_t a, std::uint32_t b) const;
-  // Of each part: does one of these joints move it?
+  // Marks each part that one of these joints moves.
   std::vector<char> moved_by(const std::set<Index>& joints) const;
 
  private:

@@ -8,7 +8,7 @@
 
 namespace spherechain::baker {
 
-// What is to stay in a frame as the clip has it. All are wishes, to first order around the turns.
+// Constraints that keep parts of a frame as in the source clip. They are linearised at the current turns.
 
 // Where joints are, and where they point.
 void add_pins(const TurnedClip& clip, const std::vector<Index>& joints, int frame, double height, const Turns& turns,
@@ -19,10 +19,10 @@ void add_grip(const TurnedClip& clip, Index one, Index other, int frame, double 
 // Hinges that one of these joints hangs on bend no farther than they can.
 void add_limits(const TurnedClip& clip, const std::vector<Index>& joints, int frame, std::vector<Wish>& wishes);
 
-// Of each frame: the hands that stand on something, as feet do. They are as still as that, and as low.
+// For each frame, the hands that stand on something as feet do: as still as feet, and as low.
 std::vector<std::vector<Index>> planted_hands(const TurnedClip& clip, const std::vector<Index>& hands,
                                               const std::vector<Index>& feet, const Vec3& up, double height);
-// Of each frame: whether two hands hold something together. They are near, and stay as they are to each other.
+// Marks each frame in which two hands hold something together: they are near, and keep their relative pose.
 std::vector<char> gripping_frames(const TurnedClip& clip, Index one, Index other, double height);
 
 }  // namespace spherechain::baker

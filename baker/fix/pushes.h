@@ -38,7 +38,7 @@ class Pushes {
 
   // From what was measured there. Another way out is not begun while one is not at its end.
   void add(const MeetingPlace& place, const Penetration& found, double target, bool is_shallow, const Turns& turns);
-  // What this is true of is pushed no more.
+  // Removes the constraints of each place for which the predicate is true.
   template <typename Predicate>
   void forget(const Predicate& is_it) {
     for (auto& [place, pushes] : of_) {

@@ -23,7 +23,7 @@ class System {
     }
   }
   Eigen::Index size() const { return static_cast<Eigen::Index>(slots_ * clip_.count() * 3); }
-  // Of a frame's joint: the place of its first number; negative: it keeps zero.
+  // The first unknown of a frame's joint. Negative: the joint keeps zero.
   Eigen::Index place(int frame, Index joint) const {
     if (frame < 0 || frame >= static_cast<int>(slot_.size()) || slot_[static_cast<std::size_t>(frame)] < 0) return -1;
     return static_cast<Eigen::Index>(

@@ -62,9 +62,9 @@ class TurnedClip {
   double bend(int frame, Index joint) const {
     return joints_[joint].hinge->bend(rotations_[joint][static_cast<std::size_t>(frame)]);
   }
-  // What a joint that may turn by `most` radians, and hardly farther than its hinge, does of a turn in a whole frame.
+  // Clamps a turn in a whole frame: to `most` radians, and to a little more than the hinge's range.
   Vec3 within_limits(int frame, Index joint, Vec3 turn, double most) const;
-  // Of each joint; between two frames blended.
+  // The turn of each joint. Between two frames, turns are blended.
   std::vector<Vec3> turns_at(double frame, const Turns& turns) const;
 
  private:

@@ -79,7 +79,7 @@ class Search {
     return sum;
   }
 
-  // Those of the limb's joints, a share of the way.
+  // The turns of the limb's joints, times `share`.
   std::vector<Vec3> scaled(int frame, const std::vector<Vec3>& turns, double share) const {
     std::vector<Vec3> out = none(frame);
     for (const Index joint : limb_.joints) {
@@ -94,7 +94,7 @@ class Search {
                              [](const Found& a, const Found& b) { return a.left < b.left; });
   }
 
-  // What frees a frame best, and how far all others must go that way.
+  // Finds the turns that free a frame best, and the share of them that every other frame needs.
   void add_way(int frame) {
     Found way = best(frame);
     for (int move = 0; move < kMoves && way.left > 0; ++move) {
@@ -106,7 +106,7 @@ class Search {
     ++ways_;
   }
 
-  // Of each frame one way: the path through all that costs least.
+  // Chooses one candidate per frame: the cheapest path through all frames.
   std::map<int, std::vector<Vec3>> steadiest() const {
     const double steady = std::pow(kSteadyWay * clip_.fps(), 2);
     std::vector<std::vector<double>> sums;
@@ -139,7 +139,7 @@ class Search {
     return out;
   }
 
-  // Of each frame the least share of a way that frees it; without one the best.
+  // Finds the least share of a candidate that frees each frame, or else the best share.
   void follow(const std::vector<Vec3>& way) {
     constexpr std::array<double, 6> kShares{0, .25, .5, .75, 1, 1.2};
     std::vector<TriedPose> poses;

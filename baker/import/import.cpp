@@ -60,7 +60,7 @@ void make_rigid(SourceMesh& mesh) {
   mesh.rig.weights.assign(mesh.positions.size(), whole);
 }
 
-// What the child process tells.
+// A mesh that the child process sends, with its notes.
 struct NotedMesh {
   SourceMesh mesh;
   std::vector<std::string> notes;

@@ -41,7 +41,7 @@ int limit(const char* name, int otherwise) {
   return value;
 }
 
-// What the child sends: the bytes that were read, or an error's words and exit code, and then one of these.
+// Status byte of the child. It follows the bytes read, or an error's words and exit code.
 enum class Outcome : char { kRead, kError, kInternal, kMemory };
 
 std::string message(std::string bytes, Outcome outcome) {
@@ -104,7 +104,7 @@ bool receive(int pipe, Clock::time_point end, std::string& bytes) {
   }
 }
 
-// What is left of a child: what it sent, whether it ended in time, and how, as waitpid has it.
+// Result of a child process: its output, its wait status (as waitpid returns it), and if it ended in time.
 struct Ended {
   std::string bytes;
   bool is_in_time;

@@ -157,7 +157,7 @@ struct Path {
   std::vector<Eigen::Vector4d> values;
 };
 
-// Of three, one or none key where that is the same to within `tolerance`.
+// Adds a path's keys: none if it stays at rest, one if it stands still within `tolerance`, else all.
 void add_channel(const Path& path, Index node, const std::vector<double>& times, double tolerance, Clip& clip) {
   const auto is = [&](const Eigen::Vector4d& value) {
     return [&, value](const Eigen::Vector4d& one) { return (one - value).norm() <= tolerance; };
@@ -192,7 +192,7 @@ class CarriedByRole : public CarriedMotion {
       if (bone_of[bone.node] == nullptr) bone_of[bone.node] = &bone;
       if (moved[b] > 0) moves_[bone.node] = 1;
     }
-    // What stands above all joints and moves no skin stays where it is: the root of a scene, an armature.
+    // Nodes above all joints that move no skin stay in place: the root of a scene, an armature.
     for (const Index node : motion_.body().joints.node) is_under_joint[node] = 1;
     for (Index n = 0; n < rig.nodes.size(); ++n) {
       const Node& node = rig.nodes[n];

@@ -40,7 +40,7 @@ inline constexpr std::size_t kLargePageBytes = 50'000'000;
 std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
                       const std::function<void(int)>& progress);
 
-// What the pages of a character's clips share, as JSON: the keys that do not depend on a motion, without chains.
+// Data that the pages of a character's clips share, as JSON: the keys that do not depend on a motion, without chains.
 std::string character_page(const AnimatedAsset& animated);
 
 }  // namespace spherechain::baker

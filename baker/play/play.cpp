@@ -19,7 +19,7 @@ namespace {
 
 Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
 
-// What the asset was baked with: other options read other vertices, and another body may be closed.
+// Settings that the asset was baked with: others would read other vertices, or close another body.
 BakeSettings settings_of(const OpenAsset& asset, const std::string& file) {
   return make_settings("balanced", asset->info().settings, file);
 }

@@ -14,7 +14,7 @@ namespace spherechain::baker {
 // The paper's two methods: chain by chain, and over all pairs, which is the product's.
 enum class Method { kChains, kAllPairs };
 
-// What one method found in a frame and what it cost.
+// Result and cost of one method in a frame.
 struct Detection {
   std::size_t tests, pairs, raw_pairs;  // pairs: each once; raw_pairs: with the repeats of pairs in several chains
   double us;                            // median of a few runs
@@ -52,8 +52,8 @@ class Player {
   // The spheres that these triangles belong to: pairs a < b, sorted.
   std::vector<Pair> spheres_of(const std::vector<Pair>& triangles) const;
 
-  // Of the last frame: the refitted spheres, and the pairs the last method found (both report the same, but chains
-  // leave out pairs in no common chain).
+  // Refitted spheres of the last frame, and the pairs that the last method found. Both methods report the same, but
+  // chains leave out pairs in no common chain.
   const std::vector<Sphere>& spheres() const { return spheres_; }
   Span<const Pair> pairs() const { return {pairs_.data(), pair_count_}; }
 

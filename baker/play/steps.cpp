@@ -16,7 +16,7 @@ namespace {
 constexpr double kMostParts = 64;    // of a step
 constexpr double kApart = 1.0 / 16;  // of a step: nearer to each other they share a frame
 
-// Of each of the asset's bones the nearest one above it; -1: none.
+// For each of the asset's bones the nearest one above it; -1: no bone.
 std::vector<int> bone_parents(const AnimatedAsset& animated) {
   const OpenAsset& asset = animated.asset();
   const SourceRig& rig = animated.character().rig;
@@ -168,8 +168,8 @@ const std::vector<StepContact>& StepPlayer::find(const Deformation& from, const 
 
 namespace {
 
-// Of some poses while they touch the one in which two body parts are deepest in each other; where they touch in none,
-// as of a part that is wholly inside the other, the first time.
+// Tries poses along the step and takes the one in which two body parts are deepest while they touch. If they touch in
+// no pose (one part may be wholly inside the other), takes the first time of contact.
 double deepest_share(const AnimatedAsset& animated, int frame, const StepContact& contact, SkinPlayer& player) {
   constexpr int kParts = 8;
   double share = double{contact.begin}, most = -1;
@@ -189,8 +189,8 @@ double deepest_share(const AnimatedAsset& animated, int frame, const StepContact
   return share;
 }
 
-// What touches on the way from a frame to the next and in neither of them. The way goes through the clip's own keys
-// between them, `parts` of it to a frame.
+// Finds contacts between a frame and the next that neither frame has. The motion goes through the clip's own keys, in
+// `parts` steps a frame.
 std::vector<StepContact> find_between(const AnimatedAsset& animated, int frame, const Deformation& from,
                                       const Deformation& to, int parts, StepPlayer& steps) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, StepContact> found;

@@ -9,9 +9,9 @@
 
 namespace spherechain::baker {
 
-// What touches on the way from one deformation to the next. Joints turn as engines blend poses, down the skeleton;
-// whole meshes as poses, and what sheared bones move, go straight. The asset must have clusters, and `animated` must
-// outlive it.
+// Finds contacts on the way from one deformation to the next. Joints turn as engines blend poses, down the skeleton.
+// Whole meshes as poses, and skin on sheared bones, move straight. The asset must have clusters, and `animated` must
+// outlive this object.
 class StepPlayer {
  public:
   StepPlayer(const AnimatedAsset& animated, Target target);
@@ -36,7 +36,7 @@ class StepPlayer {
 // where they are deepest in each other: MotionFrame::between. `told` is called with each frame.
 void look_between_frames(AnimatedAsset& animated, Target target, std::size_t clip,
                          const std::function<void(int)>& told);
-// Of all clips that play.
+// Adds the contacts between frames, for all clips that play.
 void look_between_frames(AnimatedAsset& animated, Target target, const std::function<void(int)>& told);
 
 }  // namespace spherechain::baker

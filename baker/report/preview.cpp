@@ -184,7 +184,7 @@ int add_skin_mesh(tinygltf::Model& model, const Skin& skin, bool rigged) {
   return add_mesh(model, "skin", std::move(attributes), indices, add_material(model, "skin", 1, 0.5));
 }
 
-// Of radius 1 around 0: rings of vertices from pole to pole.
+// Adds a sphere of radius 1 around 0: rings of vertices from pole to pole.
 int add_sphere_mesh(tinygltf::Model& model) {
   constexpr Index kRings = 15, kSegments = 32, kLast = kRings * kSegments + 1;
   Elements<float, 3> vertices{{0, 1, 0}};

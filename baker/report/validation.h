@@ -7,7 +7,7 @@
 
 namespace spherechain::baker {
 
-// What `validate` found: as the command line contract has it, and in a screenful.
+// Results of `validate`: as JSON (docs/json.md), and as a screenful of text.
 std::string validation_json(const Validation& validation, const AnimatedAsset& animated,
                             const ValidateSettings& settings);
 std::string validation_text(const Validation& validation, const AnimatedAsset& animated,

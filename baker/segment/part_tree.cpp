@@ -113,7 +113,7 @@ class PartTree {
     of_node.erase(kNone);
 
     const std::vector<Node>& rig = character.rig.nodes;
-    // Of each node the nearest one above that has a part.
+    // For each node, finds the nearest ancestor that has a part.
     const auto find_above = [&] {
       std::vector<int> out(rig.size(), kNone);
       for (std::size_t n = 0; n < rig.size(); ++n) {

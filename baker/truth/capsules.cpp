@@ -19,7 +19,7 @@ double distance_to_segment(const Vec3& p, const Vec3& from, const Vec3& to) {
   return (from + t * along - p).norm();
 }
 
-// Of the axes.
+// Distance of the two axes.
 double axis_distance(const Capsule& a, const Capsule& b) {
   const Vec3 u = a.to - a.from, v = b.to - b.from, w = a.from - b.from;
   const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), determinant = uu * vv - uv * uv;

@@ -22,9 +22,9 @@ Capsule fit_capsule(const std::vector<Vec3>& points, const std::vector<double>& 
 // Negative where they overlap.
 double gap(const Capsule& a, const Capsule& b);
 
-// What games have instead of spheres on chains: a capsule a bone, around the triangles that the bone moves most.
-// Bones that follow one another on the skeleton are ignored; as for spheres, others are reported where they have come
-// nearer than 0.9 of their distance at rest, axis to axis.
+// The usual alternative to spheres on chains: one capsule per bone, around the triangles that the bone moves most.
+// Neighbours on the skeleton are ignored. As for spheres, other pairs are reported if their axes come nearer than 0.9
+// of their distance at rest.
 class CapsuleRagdoll {
  public:
   // Empty where no bones move the source.
@@ -35,7 +35,7 @@ class CapsuleRagdoll {
   const TruthSurface& surface() const { return surface_; }
   bool is_ignored(std::uint32_t a, std::uint32_t b) const;
 
-  // Those that touch in a frame; sorted. A capsule is carried rigidly, its radius as it is.
+  // Sorted pairs of capsules that touch in a frame. Capsules move rigidly and keep their radius.
   std::vector<Pair> pairs(const Deformation& deformation) const;
 
   // The spheres' true pairs by capsules. Those within one capsule are a pair with itself, which is never reported.

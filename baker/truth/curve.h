@@ -9,7 +9,7 @@
 
 namespace spherechain::baker {
 
-// What would be reported under another rule: over all spheres, and by the pairs that share a chain.
+// Pairs that another rule would report: over all spheres, and of the pairs that share a chain.
 struct CurvePoint {
   RuleChange change;
   Score chains, all_pairs;

@@ -34,7 +34,7 @@ bool is_point(const Triangle& t) {
   return extent <= 0x1p-20 * most;
 }
 
-// Those without area, and points, have no box: they intersect nothing.
+// Triangles without area, and points, have no box: they intersect nothing.
 struct ExactTriangles {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   std::vector<Kernel::Triangle_3> triangles;

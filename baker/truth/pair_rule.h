@@ -25,7 +25,7 @@ class PairRule {
  public:
   PairRule(const OpenAsset& asset, Radius radius, const RuleChange& change);
 
-  // Of spheres refitted at the same kind of radius; sorted.
+  // Sorted pairs. The spheres must have been refitted with the same kind of radius.
   std::vector<Pair> pairs(const std::vector<Sphere>& spheres) const;
 
  private:

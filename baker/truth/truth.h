@@ -15,7 +15,7 @@ struct TrueContact {
   std::vector<Pair> triangles;
 };
 
-// What intersects in a frame. Out of scope are, in this order and each pair once, those that intersect in the rest pose
+// Intersections of a frame. Out of scope are, in this order and each pair once: those that intersect in the rest pose
 // too, those within one sphere's region, and those of spheres whose pair the asset ignores.
 struct FrameTruth {
   std::size_t raw_pairs = 0;

@@ -31,7 +31,7 @@ struct Frame {
   std::vector<CapsulePoint> capsules;
 };
 
-// What all frames share.
+// Data that all frames share.
 struct Context {
   const AnimatedAsset& animated;
   const ValidateSettings& settings;

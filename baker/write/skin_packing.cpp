@@ -52,7 +52,7 @@ struct EightWeights {
   Eight weights{}, deviations{};
 };
 
-// What bounds eight clusters, one after another.
+// Bounds of groups of eight successive clusters.
 struct Groups {
   std::vector<schema::BoxLanes> boxes;
   std::vector<std::uint32_t> term_counts, term_bones, morph_counts, morph_targets;

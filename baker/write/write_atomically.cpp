@@ -34,7 +34,7 @@ fs::path written_file(const fs::path& path) {
   const auto fail = [&] {
     throw Error(ExitCode::kFile, path.string() + ": cannot be created (" + std::strerror(errno) + ")");
   };
-  // What the system would not follow (a ring of links, a stranger's in /tmp) is not followed here.
+  // Links that the system would not follow (a ring of links, a stranger's in /tmp) are not followed here.
   struct ::stat there {};
   if (::stat(path.c_str(), &there) != 0 && errno != ENOENT) fail();
   constexpr int kMostLinks = 40;  // the system's own; those to nothing it has not counted

@@ -1,4 +1,4 @@
-// What the judges of the robotics formats share: a character, its poses, and turning them upright.
+// Common code for checking the robotics formats: a character, its poses, and turning them upright.
 import { execFileSync } from 'node:child_process'
 import fs from 'node:fs'
 

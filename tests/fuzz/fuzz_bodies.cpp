@@ -51,7 +51,7 @@ void add_body_ways(Case& c, JobBody& body, Ways& ways) {
   }
 }
 
-// What all jobs of this file have.
+// Ways that all jobs of this file share.
 template <typename Job>
 void add_common_ways(Case& c, Job& job, Target& other, Ways& ways) {
   ways.emplace_back([&] { job.scratch = nullptr, c.spoil(SC_NULL, SC_FIELD_SCRATCH); });

@@ -8,8 +8,8 @@
 
 namespace spherechain::quality {
 
-// What two bodies have in common, by CGAL's corefinement of their triangles, the holes at their borders filled. None
-// where CGAL cannot: where a body intersects itself, is no manifold, or stays open.
+// Common volume of two bodies, by CGAL's corefinement of their triangles, with holes at their borders filled. Empty if
+// CGAL cannot: a body intersects itself, is no manifold, or stays open.
 std::optional<double> common_volume(const std::vector<Corners>& a, const std::vector<Corners>& b);
 
 }  // namespace spherechain::quality

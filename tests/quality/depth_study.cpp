@@ -233,7 +233,7 @@ class Study {
     }
   }
 
-  // Of the same parts, by the form for games.
+  // Depth of the same two parts, by the fast form for games.
   double quick_depth(const OpenAsset& asset, const std::vector<float>& positions, const Penetration& what) const {
     spherechain::SkinContactJob find;
     find.asset = asset.handle();

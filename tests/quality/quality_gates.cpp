@@ -92,7 +92,7 @@ class Gate {
     return out + (gate_.value("contacts", false) ? " --contacts" : "");
   }
 
-  // What is asked for and not reached, a sentence each; a limit may be another figure's name.
+  // Missed gates, a sentence each. A limit may be another figure's name.
   std::vector<std::string> failures(const json& found) const {
     std::vector<std::string> out;
     const auto limit = [&](const json& value) {

@@ -14,7 +14,7 @@ using BoneSet = std::vector<std::uint16_t>;
 
 constexpr Vec3 kOrigin{0.375F, 0.5F, 0.625F};
 
-// What each bone adds to one pivot's centroid, positions relative to the origin.
+// Contribution of each bone to one pivot's centroid, positions relative to the origin.
 std::map<std::uint16_t, Vector4> parts_of(const TinyAsset& tiny, const TinySkin& skin, const Pivot& pivot) {
   std::map<std::uint16_t, Vector4> out;
   for (const std::uint32_t v : {pivot.a, pivot.b, pivot.c}) {

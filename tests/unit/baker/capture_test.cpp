@@ -74,7 +74,7 @@ const std::vector<Part>& parts() {
   return all;
 }
 
-// What a joint does in a frame: a turn about one of the body's axes (0 left, 1 up, 2 forward).
+// Motion of a joint in a frame: a turn about one of the body's axes (0 left, 1 up, 2 forward).
 struct Turn {
   int axis = 0;
   double degrees = 0;

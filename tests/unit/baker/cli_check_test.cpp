@@ -40,7 +40,7 @@ const std::vector<PlantedClip> kThrough{{"through", {150, 150, 150, 150}, true, 
 // At 15 frames a second it is above the wall in both, and in its face on the way.
 const std::vector<PlantedClip> kDetour{{"detour", {150, 150, 150}, true, {1500, 0, 1500}}};
 
-// Of one content: the bake is made once.
+// All tests of one content share this cache, so that the bake is made once.
 const std::string& shared_cache() {
   static const TemporaryFolder folder;
   static const std::string option = " --cache " + folder.path.string();
