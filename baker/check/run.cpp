@@ -248,7 +248,7 @@ class Run {
     task.work = [this, queue, at](const Task::Tell& tell) {
       check_clips(*queue, *at, options_, store_, motion_hashes_, tell);
     };
-    task.told = [this, queue, at](const std::string& line) {
+    task.on_line = [this, queue, at](const std::string& line) {
       if (line[0] == kNow) {
         tell_now(queue->character, line.substr(1));
       } else if (!*at) {

@@ -131,14 +131,14 @@ SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& o
     mesh.importer = "bvh";
     mesh.rig = read_bvh(path);
   } else {
-    auto told = from_bytes<NotedMesh>(read_in_child(path.string(), [&] {
+    auto received = from_bytes<NotedMesh>(read_in_child(path.string(), [&] {
       take_notes();  // the parent's
       NotedMesh read{is_gltf(path) ? read_with_tinygltf(path, options) : read_with_assimp(path, options), {}};
       read.notes = take_notes();
       return to_bytes(read);
     }));
-    for (const std::string& note : told.notes) add_note(note);
-    mesh = std::move(told.mesh);
+    for (const std::string& note : received.notes) add_note(note);
+    mesh = std::move(received.mesh);
   }
   clean_names(mesh.rig);
   if (options.prop) make_rigid(mesh);

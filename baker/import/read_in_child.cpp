@@ -42,9 +42,9 @@ int limit(const char* name, int otherwise) {
 }
 
 // Status byte of the child. It follows the bytes read, or an error's words and exit code.
-enum class Outcome : char { kRead, kError, kInternal, kMemory };
+enum class ChildStatus : char { kRead, kError, kInternal, kMemory };
 
-std::string message(std::string bytes, Outcome outcome) {
+std::string message(std::string bytes, ChildStatus outcome) {
   bytes.push_back(static_cast<char>(outcome));
   return bytes;
 }
@@ -72,13 +72,13 @@ void set_limits(int seconds, int megabytes) {
 
 std::string outcome_of(const std::function<std::string()>& read) {
   try {
-    return message(read(), Outcome::kRead);
+    return message(read(), ChildStatus::kRead);
   } catch (const Error& error) {
-    return message(std::string(error.what()) + static_cast<char>(error.code()), Outcome::kError);
+    return message(std::string(error.what()) + static_cast<char>(error.code()), ChildStatus::kError);
   } catch (const std::bad_alloc&) {
-    return message({}, Outcome::kMemory);
+    return message({}, ChildStatus::kMemory);
   } catch (const std::exception& error) {
-    return message(error.what(), Outcome::kInternal);
+    return message(error.what(), ChildStatus::kInternal);
   }
 }
 
@@ -159,17 +159,17 @@ std::string read_in_child(const std::string& file, const std::function<std::stri
     const char* how = WIFSIGNALED(child.status) ? ::strsignal(WTERMSIG(child.status)) : "it ends early";
     fail(std::string("crashes its importer (") + how + "; the file is damaged: export it again)");
   }
-  const auto outcome = static_cast<Outcome>(bytes.back());
+  const auto outcome = static_cast<ChildStatus>(bytes.back());
   bytes.pop_back();
   switch (outcome) {
-    case Outcome::kRead:
+    case ChildStatus::kRead:
       return bytes;
-    case Outcome::kError:
+    case ChildStatus::kError:
       throw Error(static_cast<ExitCode>(bytes.back()), bytes.substr(0, bytes.size() - 1));
-    case Outcome::kMemory:
+    case ChildStatus::kMemory:
       fail("needs more than " + std::to_string(megabytes) + " MB of memory to read" + std::string(kDamaged) +
            kMemoryName + " allows more)");
-    case Outcome::kInternal:
+    case ChildStatus::kInternal:
       break;
   }
   throw std::runtime_error(bytes);

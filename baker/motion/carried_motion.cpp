@@ -59,12 +59,12 @@ double same_skeleton(const SourceRig& rig, const SourceRig& capture) {
   }
   if (ratios.empty()) return 0;
   const double unit = weighted_quantile(std::move(ratios), 0.5);
-  constexpr double kSame = 0.02, kMost = 0.75;
+  constexpr double kSame = 0.02, kAlikeMin = 0.75;
   const double tolerance = kSame * length_sum / static_cast<double>(bones.size());
   const auto alike = std::count_if(bones.begin(), bones.end(), [&](const auto& pair) {
     return (pair.first - unit * pair.second).norm() <= tolerance;
   });
-  return static_cast<double>(alike) >= kMost * static_cast<double>(bones.size()) ? unit : 0;
+  return static_cast<double>(alike) >= kAlikeMin * static_cast<double>(bones.size()) ? unit : 0;
 }
 
 const Affine& parent_of(const Node& node, const std::vector<Affine>& world) {

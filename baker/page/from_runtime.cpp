@@ -74,7 +74,7 @@ std::vector<PageSphere> page_spheres(const OpenAsset& asset, const Character& ch
 }
 
 PageParts page_parts(const OpenAsset& asset) {
-  BodyParts parts = parts_of(asset);
+  BodyParts parts = body_parts_of(asset);
   PageParts out;
   for (const BodyPart& part : parts.parts) out.names.push_back(part.name);
   out.of_triangle = std::move(parts.of_triangle);

@@ -225,7 +225,7 @@ std::vector<Joint> joints_of(const OpenAsset& asset) {
 
 double mm_per_unit(const OpenAsset& asset) { return 1000 * double{asset->info().metres_per_unit}; }
 
-BodyParts parts_of(const OpenAsset& asset) {
+BodyParts body_parts_of(const OpenAsset& asset) {
   constexpr std::uint8_t kNone = 255;
   BodyParts out;
   for (std::size_t i = 0; i < asset->part_count(); ++i) {

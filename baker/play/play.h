@@ -106,7 +106,7 @@ double mm_per_unit(const OpenAsset& asset);
 std::vector<Joint> joints_of(const OpenAsset& asset);
 
 // The asset's body parts; 255 where a source triangle has none.
-BodyParts parts_of(const OpenAsset& asset);
+BodyParts body_parts_of(const OpenAsset& asset);
 
 // The bone matrices that a game passes to the runtime: rows of a 3 by 4 matrix for each of the asset's bones. Bone
 // slots without a bone get the identity.

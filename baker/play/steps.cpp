@@ -13,7 +13,7 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kMostParts = 64;    // of a step
+constexpr double kPartsMax = 64;     // of a step
 constexpr double kApart = 1.0 / 16;  // of a step: nearer to each other they share a frame
 
 // For each of the asset's bones the nearest one above it; -1: no bone.
@@ -214,7 +214,7 @@ std::vector<StepContact> find_between(const AnimatedAsset& animated, int frame, 
     before = std::move(next);
   }
   std::vector<StepContact> out;
-  for (const auto& [parts_of, contact] : found) {
+  for (const auto& [pair, contact] : found) {
     if (contact.at_start == 0 && contact.at_end == 0) out.push_back(contact);
   }
   return out;
@@ -223,7 +223,7 @@ std::vector<StepContact> find_between(const AnimatedAsset& animated, int frame, 
 }  // namespace
 
 void look_between_frames(AnimatedAsset& animated, Target target, std::size_t clip,
-                         const std::function<void(int)>& told) {
+                         const std::function<void(int)>& progress) {
   animated.check_clusters();
   StepPlayer steps(animated, target);
   SkinPlayer player(animated.asset(), target);
@@ -231,12 +231,12 @@ void look_between_frames(AnimatedAsset& animated, Target target, std::size_t cli
   Deformation before;
   const int first = animated.clips()[clip].first, end = first + animated.clips()[clip].count;
   for (int i = first; i < end; ++i) {
-    told(i);
+    progress(i);
     Deformation deformation = animated.deformation(i);
     if (i > first) {
       std::vector<double>& shares = between[static_cast<std::size_t>(i - 1)];
       const double seconds = animated.time(i) - animated.time(i - 1);
-      const double parts = std::clamp(std::ceil(seconds * animated.own_rate(clip) - 0.01), 1.0, kMostParts);
+      const double parts = std::clamp(std::ceil(seconds * animated.own_rate(clip) - 0.01), 1.0, kPartsMax);
       for (const StepContact& contact :
            find_between(animated, i - 1, before, deformation, static_cast<int>(parts), steps)) {
         shares.push_back(deepest_share(animated, i - 1, contact, player));
@@ -250,8 +250,9 @@ void look_between_frames(AnimatedAsset& animated, Target target, std::size_t cli
   animated.put_between(between);
 }
 
-void look_between_frames(AnimatedAsset& animated, Target target, const std::function<void(int)>& told) {
-  for (std::size_t clip = 0; clip < animated.clips().size(); ++clip) look_between_frames(animated, target, clip, told);
+void look_between_frames(AnimatedAsset& animated, Target target, const std::function<void(int)>& progress) {
+  for (std::size_t clip = 0; clip < animated.clips().size(); ++clip)
+    look_between_frames(animated, target, clip, progress);
 }
 
 }  // namespace spherechain::baker

@@ -33,10 +33,10 @@ class StepPlayer {
 };
 
 // Puts a frame between two of a clip's own wherever body parts touch on the way that touch in neither of them, about
-// where they are deepest in each other: MotionFrame::between. `told` is called with each frame.
+// where they are deepest in each other: MotionFrame::between. `progress` is called with each frame.
 void look_between_frames(AnimatedAsset& animated, Target target, std::size_t clip,
-                         const std::function<void(int)>& told);
+                         const std::function<void(int)>& progress);
 // Adds the contacts between frames, for all clips that play.
-void look_between_frames(AnimatedAsset& animated, Target target, const std::function<void(int)>& told);
+void look_between_frames(AnimatedAsset& animated, Target target, const std::function<void(int)>& progress);
 
 }  // namespace spherechain::baker

@@ -251,7 +251,7 @@ class PartTree {
 
 }  // namespace
 
-std::vector<Part> parts_of(const Character& character, std::size_t spheres, const std::vector<bool>& left_out) {
+std::vector<Part> build_part_tree(const Character& character, std::size_t spheres, const std::vector<bool>& left_out) {
   constexpr double kShare = 0.3;       // of a sphere's even share of the area
   constexpr double kSmallest = 0.005;  // of the area: regions are numbered in a byte
   const double area = surface_area(character.skin);

@@ -22,7 +22,7 @@ class MissedDepth {
   double operator()(const TrueContact& contact) const;
 
  private:
-  Pair parts_of(const Pair& triangles) const;
+  Pair part_pair_of(const Pair& triangles) const;
 
   const std::vector<std::uint8_t>& part_of_;
   std::map<Pair, double> depths_;  // of two parts

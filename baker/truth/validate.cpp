@@ -41,7 +41,7 @@ struct Context {
   std::vector<Pair> rest_pairs = intersections.find(rest).pairs;
   double close = kCloseSurface * animated.frame().height;
   FarParts is_far{animated, surface, close};
-  BodyParts parts = parts_of(animated.asset());
+  BodyParts parts = body_parts_of(animated.asset());
   std::set<Pair> close_spheres = close_owners(surface, rest, surface.sphere, close);  // at rest
   Curve curve{animated.asset(), settings.radius};
   std::vector<std::pair<double, CapsuleRagdoll>> ragdolls = make_ragdolls();
@@ -91,7 +91,7 @@ std::vector<CapsulePoint> score_ragdolls(const Context& context, const Intersect
   const auto is_close = [&](const Pair& pair) { return closeness(pair); };
   const auto is_apart = [&](const Pair& pair) { return context.close_capsules.count(pair) == 0; };
   const FrameTruth shared = any.by_capsules(truth),
-                   own = judge(
+                   own = frame_truth(
                        found, context.rest_pairs, any.surface(),
                        [&](std::uint32_t a, std::uint32_t b) { return any.is_ignored(a, b); }, context.is_far);
   std::vector<CapsulePoint> points;
@@ -143,7 +143,7 @@ Frame validate_frame(const Context& context, int index) {
 
   Frame frame;
   const auto ignored = [&](std::uint32_t a, std::uint32_t b) { return is_ignored(animated.asset(), a, b); };
-  frame.truth = judge(found, context.rest_pairs, surface, ignored, context.is_far);
+  frame.truth = frame_truth(found, context.rest_pairs, surface, ignored, context.is_far);
   Player chains(animated.asset(), settings.radius, true, false, settings.target),
       all(animated.asset(), settings.radius, false, true, settings.target);
   const std::vector<Pair> chains_pairs = touching_spheres(chains, positions),
@@ -171,8 +171,8 @@ Frame validate_frame(const Context& context, int index) {
       // Exact contacts of these very positions, which differ from the baker's by rounding.
       const ContactsFromBones of_bones =
           find_contacts_from_bones(animated.asset(), animated.character(), deformation, settings.target);
-      const FrameTruth truth =
-          judge(context.intersections.find(of_bones.positions), context.rest_pairs, surface, ignored, context.is_far);
+      const FrameTruth truth = frame_truth(context.intersections.find(of_bones.positions), context.rest_pairs, surface,
+                                           ignored, context.is_far);
       frame.contacts_from_bones = compare(of_bones.pairs, truth.pairs);
       frame.neighbour_contacts_from_bones = compare(of_bones.neighbours, truth.neighbours);
     }

@@ -12,7 +12,7 @@ namespace spherechain::test {
 namespace {
 
 constexpr std::size_t kStepWords = std::size_t{1} << 17;
-constexpr std::size_t kMostSpheres = 16;  // of more, steps in many pieces take too long
+constexpr std::size_t kSpheresMax = 16;  // of more, steps in many pieces take too long
 
 // May it be refused as too wild?
 bool draw_transforms(Case& c, sc_transform* joints, std::size_t count) {
@@ -276,7 +276,7 @@ void check_contacts(Case& c, const StepJob& job) {
 
 void fuzz_steps(Case& c) {
   const std::size_t table_words = draw_asset(c) ? skin_table_words(&c.asset) : 0;
-  if (table_words == 0 || table_words > kStepWords || c.n > kMostSpheres || c.view().part_count() > 20) {
+  if (table_words == 0 || table_words > kStepWords || c.n > kSpheresMax || c.view().part_count() > 20) {
     return;
   }
   std::uint64_t* const table = c.arena.add<std::uint64_t>(table_words);

@@ -122,9 +122,9 @@ double free_after(const Parts& parts, const Vec3& direction, double gap, double 
 
 }  // namespace
 
-Way shortest_way(const Parts& parts, int directions, double gap) {
-  Way best{kNever, Vec3::UnitZ()};
-  std::vector<Way> ways;
+WayOut shortest_way(const Parts& parts, int directions, double gap) {
+  WayOut best{kNever, Vec3::UnitZ()};
+  std::vector<WayOut> ways;
   const auto attempt = [&](const Vec3& direction, double bound) {
     const double depth = free_after(parts, direction, gap, bound);
     if (depth >= bound || is_enclosed(parts, depth * direction)) return kNever;
@@ -132,17 +132,17 @@ Way shortest_way(const Parts& parts, int directions, double gap) {
     if (depth < best.depth) best = ways.back();
     return depth;
   };
-  for (const Vec3& direction : baker::even_directions(directions)) attempt(direction, best.depth < kNever ? 1.6 * best.depth : 1e9);
-  std::sort(ways.begin(), ways.end(), [](const Way& l, const Way& r) { return l.depth < r.depth; });
+  for (const Vec3& direction : baker::even_directions(directions))
+    attempt(direction, best.depth < kNever ? 1.6 * best.depth : 1e9);
+  std::sort(ways.begin(), ways.end(), [](const WayOut& l, const WayOut& r) { return l.depth < r.depth; });
   ways.resize(std::min<std::size_t>(ways.size(), 3));
-  const std::vector<Way> starts = ways;
-  for (Way way : starts) {
+  const std::vector<WayOut> starts = ways;
+  for (WayOut way : starts) {
     for (double angle = 0.35; angle > 0.01; angle *= 0.6) {
       const Vec3 u = way.direction.unitOrthogonal(), v = way.direction.cross(u), center = way.direction;
       for (int k = 0; k < 6; ++k) {
         const double turn = k * std::numbers::pi / 3;
-        const Vec3 direction =
-            (center + std::tan(angle) * (std::cos(turn) * u + std::sin(turn) * v)).normalized();
+        const Vec3 direction = (center + std::tan(angle) * (std::cos(turn) * u + std::sin(turn) * v)).normalized();
         const double depth = attempt(direction, way.depth);
         if (depth < way.depth) way = {depth, direction};
       }

@@ -22,13 +22,13 @@ struct Parts {
   std::function<bool(std::size_t, std::size_t)> counts;  // a pair of triangles that may touch is left out
 };
 
-struct Way {
+struct WayOut {
   double depth;
   Vec3 direction;
 };
 
 // The shortest way of b out of a of `directions` evenly spread ones and of those near the best of them. Free places
 // shorter than `gap` are none, and so are those where one is inside the other.
-Way shortest_way(const Parts& parts, int directions, double gap);
+WayOut shortest_way(const Parts& parts, int directions, double gap);
 
 }  // namespace spherechain::quality

@@ -189,11 +189,11 @@ class Study {
     const std::size_t count = std::min(all.size(), static_cast<std::size_t>(judged));
     for (std::size_t k = 0; k < count; ++k) {
       const Found& found = all[k * all.size() / count];
-      judge(found.frame, found.what, metre);
+      evaluate(found.frame, found.what, metre);
     }
   }
 
-  void judge(int frame, const Penetration& what, double metre) {
+  void evaluate(int frame, const Penetration& what, double metre) {
     const OpenAsset& asset = animated_->asset();
     const std::vector<float> positions = pack(animated_->positions(animated_->deformation(frame)));
     const Posed posed(asset, positions, what);
@@ -203,7 +203,7 @@ class Study {
     const bool frees = posed.is_free(rule, (depth + margin) * direction);
     const bool frees_early = posed.is_free(rule, 0.9 * depth * direction);
     const quality::Parts parts = posed.parts(rule);
-    const quality::Way way = quality::shortest_way(parts, kDirections, margin);
+    const quality::WayOut way = quality::shortest_way(parts, kDirections, margin);
     const double ratio = depth / way.depth;
     ++tally_.judged;
     tally_.freed += frees;

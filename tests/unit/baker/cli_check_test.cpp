@@ -492,7 +492,8 @@ TEST_CASE("results that somebody deletes while check runs are lost, and no chara
       const auto clips = baker::check_library(read, options, store, [&](const baker::RunState& state) {
         if (state.doing == when && state.done == state.all) fs::remove_all(store.folder());
       });
-      baker::judge(clips, {{read[0].name, read[0].file.string(), {}}}, store, {}, false, baker::FailOn::kPenetration);
+      baker::evaluate_clips(clips, {{read[0].name, read[0].file.string(), {}}}, store, {}, false,
+                            baker::FailOn::kPenetration);
     };
     CHECK_THROWS_WITH(check(), lost.c_str());
   }
