@@ -1,4 +1,4 @@
-# What every target of the project has in common. Warnings and floating-point rules are PRIVATE: a consumer never inherits them.
+# Settings that every target of the project shares. Warnings and floating-point rules are PRIVATE: a consumer never inherits them.
 function(spherechain_target target standard)
   target_compile_features(${target} PUBLIC cxx_std_${standard})
   # MSVC and clang-cl. /fp:precise lets clang-cl, and MSVC before Visual Studio 2022, fuse multiply-adds: see below.

@@ -138,7 +138,7 @@ function scope(row) {
     total((f) => f.out_of_scope.ignored), truth, percent(share(posed - truth, posed))];
 }
 
-// Of the characters and two recordings, all together.
+// Volumes of the characters and two recordings, all together.
 const volumes = () => runs(join(dirname(tool), "volume_study"), String(kFrames), ...[`${human}+${models}/BVH/Boxing_Toes.bvh`, `${human}+${models}/BVH/01_01.bvh`, ...characters]
   .flatMap((source) => [asset(source.split("+")[0], "balanced"), source]));
 const depth = () => runs(join(dirname(tool), "depth_study"), "--judged", String(kJudged), ...posed);

@@ -3,8 +3,8 @@
 // Draws penetrations, and contacts of the other classes, to be judged by eye:
 //   scripts/class_sheet.mjs build/release/bin/spherechain OUT [--seed N] CHARACTER[+MOTION]...
 //   scripts/class_sheet.mjs build/release/bin/spherechain OUT --deepest CHARACTER[+MOTION]...
-// Writes 50 of each, by the seed (2), evenly over the characters, to OUT: large pictures to judge, mixed and without
-// class and depth (judge_1.png ..., three contacts each), table.json, and a sheet of small ones of each group. With --deepest: large pictures of
+// Writes 50 of each, by the seed (2), evenly over the characters, to OUT: large pictures, mixed and without
+// class and depth (judged_1.png ..., three contacts each), table.json, and a sheet of small ones of each group. With --deepest: large pictures of
 // the ten pairs of body parts of each character that penetrate deepest. A MOTION that ends in .json is a pose file.
 // Pages in OUT/pages are used again: delete them when the tool has changed. Needs Chromium (CHROMIUM names another one).
 // A part is blue, the other orange, the line where they cross black. Large pictures: close up, from another side with the
@@ -295,7 +295,7 @@ const random = randomFrom(seed);
 const shuffled = (list) => list.map((x) => [random(), x]).sort((p, q) => p[0] - q[0]).map((p) => p[1]);
 const groups = deepest
   ? loaded.map((one) => [`deepest_${one.name}`, chooseDeepest(one)])
-  : [["judge", shuffled([...choose(loaded, kCount, random, (kind) => kind === kPenetration), ...choose(loaded, kCount, random, (kind) => kind !== kPenetration)])]];
+  : [["judged", shuffled([...choose(loaded, kCount, random, (kind) => kind === kPenetration), ...choose(loaded, kCount, random, (kind) => kind !== kPenetration)])]];
 const table = [];
 for (const [name, samples] of groups.filter(([, list]) => list.length > 0)) {
   const drawn = samples.map((sample, i) => {

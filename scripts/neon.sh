@@ -13,7 +13,7 @@ for command in aarch64-linux-gnu-g++ qemu-aarch64; do
   DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends g++-aarch64-linux-gnu qemu-user >/dev/null
   break
 done
-# What the library needs of others is headers, the same for every machine. Static, so that qemu needs no foreign libraries.
+# The library needs only headers of other projects, the same for every machine. Static, so that qemu needs no foreign libraries.
 cmake --preset release -B build/neon -DSPHERECHAIN_BAKER=OFF -DSPHERECHAIN_VIEWER=OFF -DSPHERECHAIN_BENCH=OFF \
   -DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64 \
   -DCMAKE_C_COMPILER=aarch64-linux-gnu-gcc -DCMAKE_CXX_COMPILER=aarch64-linux-gnu-g++ -DCMAKE_EXE_LINKER_FLAGS=-static \

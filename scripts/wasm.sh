@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 for command in emcc node; do
   command -v "$command" >/dev/null || { echo "wasm: $command is missing: install emscripten and nodejs first" >&2; exit 1; }
 done
-# What the tests need of others is headers, the same for every machine; /usr/include as a whole would bring Linux's too.
+# The tests need only headers of other projects, the same for every machine; all of /usr/include would bring Linux's too.
 root=$PWD/build/wasm-root
 rm -rf "$root"
 mkdir -p "$root/include" "$root/lib/cmake"

@@ -15,7 +15,7 @@ for command in x86_64-w64-mingw32-g++-posix wine; do
   break
 done
 
-# What the build needs of others is headers, the same for every machine; /usr/include as a whole would bring Linux's too.
+# The build needs only headers of other projects, the same for every machine; all of /usr/include would bring Linux's too.
 root=$PWD/build/windows-root
 rm -rf "$root"
 mkdir -p "$root/include" "$root/lib/cmake/TinyGLTF"

@@ -109,7 +109,7 @@ std::vector<Index> triangles_around(const Mesh& mesh, const FittedSphere& sphere
   return around;
 }
 
-// Those of some triangles whose weights overlap others' by more than `least`.
+// Selects the triangles that share more than `least` of their weights with the others.
 std::vector<Index> moving_alike(const Character& character, const std::vector<Index>& triangles,
                                 const BoneWeights& weights, double least) {
   if (least <= 0) return triangles;
@@ -120,7 +120,7 @@ std::vector<Index> moving_alike(const Character& character, const std::vector<In
   return alike;
 }
 
-// What the pivots make of the sphere: its centre and spread in the rest pose.
+// Computes the sphere's centre and spread as its pivots reproduce them in the rest pose.
 BoundSphere carried(const Mesh& mesh, const FittedSphere& sphere, RefitRule rule, std::vector<BoundPivot> pivots) {
   BoundSphere bound{sphere.ball, 0, 0, std::move(pivots), 0};
   Vec3 center = Vec3::Zero();

@@ -62,7 +62,7 @@ Attempt<Binding> bind_spheres(const Character& character, const Regions& regions
 // The sphere of each triangle of the skin: the closest of its region (section 5.1); of a tree as it was fitted.
 std::vector<std::uint32_t> assign_triangles(const Mesh& skin, const Regions& regions, const Spheres& spheres);
 
-// What the magnitudes of a sphere's weights may add up to: above 1 the sphere moves more than its pivots do.
+// Largest sum of a sphere's absolute weights. Above 1, the sphere moves more than its pivots do.
 inline constexpr double kIllPosed = 1.5;
 
 // Chooses the pivots of one sphere among its triangles. Under the paper's rule: `count` of them, or none where there

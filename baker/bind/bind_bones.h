@@ -9,7 +9,7 @@
 
 namespace spherechain::baker {
 
-// What moves a source: its own skeleton and skin, or where it has none, the automatic rig's.
+// A bone that moves a source: from its own skeleton and skin, or else from the automatic rig.
 struct MovingBone {
   std::string name;
   Affine inverse_bind;

@@ -13,11 +13,12 @@ namespace {
 using Vec4 = Eigen::Vector4d;
 using Matrix4 = Eigen::Matrix4d;
 
-// What each bone adds to each pivot of a sphere.
+// Contribution of each bone to each pivot of a sphere.
 using PivotParts = std::vector<std::map<Index, Vec4>>;
 
-std::vector<PivotParts> parts_of(const Character& character, const Binding& binding, const BoneBinding& bones,
-                                 const std::vector<VertexWeights>& weights, const Vec3& origin) {
+std::vector<PivotParts> pivot_contributions(const Character& character, const Binding& binding,
+                                            const BoneBinding& bones, const std::vector<VertexWeights>& weights,
+                                            const Vec3& origin) {
   std::vector<PivotParts> out;
   for (const BoundSphere& sphere : binding.spheres) {
     PivotParts& parts = out.emplace_back();
@@ -122,7 +123,7 @@ MomentBinding bind_moments(const Character& character, const BoneBinding& bones,
   }
   out.origin = middle_of_pivots(character, binding);
   std::vector<PivotParts> parts =
-      parts_of(character, binding, bones, weights_to_bones(character, rig_weights), out.origin);
+      pivot_contributions(character, binding, bones, weights_to_bones(character, rig_weights), out.origin);
   std::ranges::for_each(parts, keep_main_bones);
   out.reference = find_reference(parts, bones.bones.size());
   std::vector<SphereMoments> spheres;

@@ -11,7 +11,7 @@ namespace spherechain::baker {
 
 inline constexpr std::size_t kMaxMomentBones = 22;  // of a sphere: its pairs are numbered in a byte
 
-// What bones add to a sphere's centre and to its mean squared distance (schemas/sphere_chains.fbs, Moments).
+// Contributions of bones to a sphere's centre and mean squared distance (schemas/sphere_chains.fbs, Moments).
 struct SphereMoments {
   std::uint32_t sphere;
   std::vector<Index> bones;              // ascending; 1 to kMaxMomentBones

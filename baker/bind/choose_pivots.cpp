@@ -11,13 +11,14 @@
 namespace spherechain::baker {
 namespace {
 
-// A set of pivots as a wish: `count` directions around the axis, every second one shifted along it by +-stagger radii.
+// The targets of a set of pivots: `count` directions around the axis, every second one shifted along it by +-stagger
+// radii.
 struct Pattern {
   int count;
   double stagger;
 };
 
-// The triangles nearest to the wished places, each once. A quadrant without skin (the inner half of the torso) gets the
+// The triangles nearest to the targets, each once. A quadrant without skin (the inner half of the torso) gets the
 // nearest there is.
 std::vector<Index> pick(const Mesh& mesh, const std::vector<Index>& triangles, const FittedSphere& sphere,
                         const Vec3& reference, const Pattern& pattern) {
@@ -132,10 +133,10 @@ std::vector<BoundPivot> choose_nearest_pivots(const Mesh& mesh, const std::vecto
 
 std::vector<BoundPivot> choose_even_pivots(const Mesh& mesh, const std::vector<Index>& triangles,
                                            const FittedSphere& sphere) {
-  constexpr std::size_t kMost = 16;
+  constexpr std::size_t kPivotsMax = 16;
   std::vector<std::pair<double, Index>> near;
   for (const Index t : triangles) near.emplace_back((triangle_centroid(mesh, t) - sphere.ball.center).squaredNorm(), t);
-  const std::size_t count = std::min(kMost, near.size());
+  const std::size_t count = std::min(kPivotsMax, near.size());
   std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
   std::vector<BoundPivot> pivots;
   for (std::size_t i = 0; i < count; ++i) pivots.push_back({near[i].second, 1.0 / static_cast<double>(count)});

@@ -19,7 +19,7 @@ struct FitQuality {
   double protrusion;                                 // mean distance of the spheres' outer surface from the skin
   std::vector<double> far_of_region;                 // of each region: the share of its skin farther than that
 
-  // Those with most of their skin far.
+  // Regions with most of their skin far from the spheres.
   std::vector<std::uint8_t> far_regions() const;
 
   // Good: at most 5 % far, protrusion at most 0.025. Fair: three times as much, and 0.04.

@@ -21,8 +21,8 @@ Pairs pairs_of(const std::vector<Index>& bones) {
   return out;
 }
 
-// What there is in putting both into one batch: pairs that it has once instead of twice, and one batch less. 0 where
-// they do not fit.
+// Saving from putting both into one batch: shared pairs are stored once, and there is one batch less. 0 if they do not
+// fit into one.
 std::size_t gain_of(const Pairs& a, const Pairs& b) {
   Pairs shared;
   std::ranges::set_intersection(a, b, std::back_inserter(shared));

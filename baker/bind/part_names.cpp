@@ -79,7 +79,7 @@ std::string middle_part(const std::string& role) {
   return role.starts_with("tail") ? "tail" : "";
 }
 
-// Of the role of a limb's joint; empty where it is none.
+// Names the body part for the role of a limb's joint. Empty for other roles.
 PartName limb_segment(std::string_view role, BodyKind kind) {
   const Side side = take_side(role);
   for (const Segment& segment : kSegments) {
@@ -137,7 +137,7 @@ class Namer {
   }
 
  private:
-  // What the node's role and name say; empty where it belongs to its ancestor.
+  // The name that a node's role and name give. Empty if the node belongs to its ancestor's part.
   PartName own_part(int node) const {
     const NodeRole& role = role_of(node);
     const std::string& name = rig_.nodes[static_cast<std::size_t>(node)].name;

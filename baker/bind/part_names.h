@@ -10,7 +10,7 @@
 
 namespace spherechain::baker {
 
-// What people call a part of the body, and the side it is on.
+// The everyday name of a body part, and the side it is on.
 struct PartName {
   std::string name;
   Side side = Side::kNone;

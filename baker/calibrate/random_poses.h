@@ -37,7 +37,7 @@ class RandomPoses {
     std::vector<Affine> bones;  // for each bone: rest -> posed
     std::vector<double> morphs;
   };
-  // Of the kinds above, 0 to 2; `part`, of the clips' time, is where one of the first kind is.
+  // Draws a pose of kind 0 to 2 (see above). Kind 0 takes the pose at share `part` of the clips' time.
   Pose next(Random& random, int kind, double part) const;
 
  private:

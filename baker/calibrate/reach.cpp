@@ -18,7 +18,7 @@ constexpr double kRestReachMin = 0.5;                  // of what a rest pair sh
 constexpr std::size_t kSteps = 200;
 constexpr double kStep = kSampledReach / kSteps;
 
-// Distances are told apart in steps, as parts of the radii's sum.
+// Distances differ in steps, as parts of the radii's sum.
 std::size_t step_of(double part) {
   return part > 0 ? std::min(static_cast<std::size_t>(part / kStep), kSteps - 1) : std::size_t{0};
 }
@@ -68,7 +68,7 @@ struct Pool {
   }
 };
 
-// What each pair is judged by: its own samples, what it is at rest, and what it borrows.
+// Evidence for each pair: its own samples, its state at rest, and samples borrowed from pairs of the same spheres.
 std::vector<Evidence> evidence_of(const std::vector<SampledPair>& pairs,
                                   const std::vector<std::optional<double>>& at_rest, std::size_t sphere_count) {
   std::vector<Evidence> evidence(pairs.size());

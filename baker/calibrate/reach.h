@@ -20,8 +20,8 @@ namespace spherechain::baker {
 std::vector<double> best_reaches(const std::vector<SampledPair>& pairs,
                                  const std::vector<std::optional<double>>& at_rest, std::size_t sphere_count);
 
-// What to multiply the sampled radius of each sphere with, at least `least`, so that each pair reaches as far as it
-// should. `radii` are the spheres' at rest; mirrored spheres get the same factor.
+// Factors for each sphere's sampled radius, at least `least`, so that each pair reaches as far as it should. `radii`
+// are the radii at rest. Mirrored spheres get the same factor.
 std::vector<double> radius_factors(const std::vector<SampledPair>& pairs, const std::vector<double>& reaches,
                                    const std::vector<double>& radii, const std::vector<double>& least);
 

@@ -50,7 +50,7 @@ class PosedAsset {
     refit();
   }
 
-  // Of `pairs`, sorted.
+  // `pair` is one of `pairs`, which is sorted.
   bool touch(const Pair& pair) const { return std::binary_search(touching_.begin(), touching_end(), pair); }
   const std::vector<Sphere>& spheres() const { return spheres_; }
 

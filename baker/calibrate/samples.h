@@ -17,7 +17,7 @@ struct PairSample {
   bool expected;             // whether the pose is a moment of a clip
 };
 
-// Of poses in which two spheres are farther apart than this, as a part of the sum of their radii, there are no samples.
+// Poses with two spheres farther apart than this multiple of their radii's sum are not sampled.
 inline constexpr double kSampledReach = 2;
 
 struct SampledPair {

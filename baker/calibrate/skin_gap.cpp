@@ -10,7 +10,7 @@ SkinGaps::SkinGaps(const Mesh& skin, const Binding& binding) : mesh_(skin) {
   std::vector<std::vector<Index>> triangles(binding.spheres.size());
   for (Index t = 0; t < binding.sphere_of_triangle.size(); ++t) triangles[binding.sphere_of_triangle[t]].push_back(t);
   for (const std::vector<Index>& of_sphere : triangles) {
-    Skin& own = skins_.emplace_back();
+    SphereSkin& own = skins_.emplace_back();
     if (of_sphere.empty()) continue;
     own.surface = std::make_unique<SurfaceQuery>(skin, of_sphere);
     for (const Index t : of_sphere) {
@@ -22,7 +22,7 @@ SkinGaps::SkinGaps(const Mesh& skin, const Binding& binding) : mesh_(skin) {
   }
 }
 
-double SkinGaps::nearest(const Skin& from, const Skin& to, double bound) const {
+double SkinGaps::nearest(const SphereSkin& from, const SphereSkin& to, double bound) const {
   std::vector<std::pair<double, Index>> order;  // by a lower bound of the distance
   for (const Index v : from.vertices) {
     const double least = to.box.exteriorDistance(mesh_.positions[v]);

@@ -18,16 +18,16 @@ class SkinGaps {
   double between(std::uint32_t a, std::uint32_t b) const;
 
  private:
-  struct Skin {
+  struct SphereSkin {
     std::unique_ptr<SurfaceQuery> surface;  // none where the sphere has no triangles
     std::vector<Index> vertices;            // sorted
     Eigen::AlignedBox3d box;                // around its triangles
   };
   // The least distance, or `bound` where it is no less.
-  double nearest(const Skin& from, const Skin& to, double bound) const;
+  double nearest(const SphereSkin& from, const SphereSkin& to, double bound) const;
 
   const Mesh& mesh_;
-  std::vector<Skin> skins_;
+  std::vector<SphereSkin> skins_;
 };
 
 }  // namespace spherechain::baker

@@ -41,8 +41,8 @@ struct LimbPlace {
 // spheres is for readers; neighbours on the body are Spheres::links.
 Chains build_chains(const Spheres& spheres, const std::vector<LimbPlace>& limbs);
 
-// Of regions that are a tree (Regions::parents): a chain for each two leaves, through the regions between them; a
-// single leaf's goes to the root.
+// Builds chains for regions that form a tree (Regions::parents): one per two leaves, through the regions between them.
+// A single leaf's chain goes to the root.
 Chains build_tree_chains(const Spheres& spheres, const std::vector<std::uint8_t>& parents);
 
 }  // namespace spherechain::baker

@@ -12,8 +12,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json event_json(const JudgedEvent& judged) {
-  const Event& event = judged.event;
+ordered_json event_json(const EvaluatedEvent& evaluated) {
+  const Event& event = evaluated.event;
   ordered_json out{{"parts", event.parts},
                    {"class", sc_penetration_class_name(event.kind)},
                    {"from", number_json(event.from)},
@@ -23,17 +23,17 @@ ordered_json event_json(const JudgedEvent& judged) {
                    {"depth_percent", event.depth_percent},
                    {"volume_ml", event.volume_ml >= 0 ? ordered_json(event.volume_ml) : ordered_json()},
                    {"direction", to_json(event.direction)},
-                   {"state", state_name(judged.state)},
-                   {"rule", judged.rule.empty() ? ordered_json() : ordered_json(judged.rule)},
-                   {"fails", judged.fails}};
-  if (judged.before_mm >= 0) out["known_depth_mm"] = judged.before_mm;
+                   {"state", state_name(evaluated.state)},
+                   {"rule", evaluated.rule.empty() ? ordered_json() : ordered_json(evaluated.rule)},
+                   {"fails", evaluated.fails}};
+  if (evaluated.before_mm >= 0) out["known_depth_mm"] = evaluated.before_mm;
   if (event.eye) out["camera"] = {{"target", to_json(event.point)}, {"back", to_json(*event.eye)}};
   return out;
 }
 
-ordered_json clip_json(const JudgedClip& clip) {
+ordered_json clip_json(const EvaluatedClip& clip) {
   ordered_json events = ordered_json::array();
-  for (const JudgedEvent& event : clip.events) events.push_back(event_json(event));
+  for (const EvaluatedEvent& event : clip.events) events.push_back(event_json(event));
   ordered_json besides = ordered_json::object();
   for (const auto& [kind, count] : clip.besides) besides[sc_penetration_class_name(kind)] = count;
   ordered_json out{{"character", clip.character},   {"clip", clip.clip.clip},
@@ -49,7 +49,7 @@ ordered_json clip_json(const JudgedClip& clip) {
 std::string check_json(const Verdict& verdict) {
   const Summary& s = verdict.summary;
   ordered_json clips = ordered_json::array();
-  for (const JudgedClip& clip : verdict.clips) clips.push_back(clip_json(clip));
+  for (const EvaluatedClip& clip : verdict.clips) clips.push_back(clip_json(clip));
   return json_text({{"writer", kWriter},
                     {"summary",
                      {{"characters", s.characters},

@@ -9,19 +9,19 @@
 namespace spherechain::baker {
 namespace {
 
-std::string clip_text(const JudgedClip& clip) {
+std::string clip_text(const EvaluatedClip& clip) {
   return clip.character + (clip.clip.clip.empty() ? "" : " " + clip.clip.clip);
 }
 
-std::string marks(const JudgedEvent& judged) {
+std::string marks(const EvaluatedEvent& evaluated) {
   std::string out;
   const auto add = [&](const std::string& text) { out += (out.empty() ? "  [" : ", ") + text; };
-  const PenetrationClass kind = judged.event.kind;
+  const PenetrationClass kind = evaluated.event.kind;
   if (kind == SC_CLASS_DEEP_FOLD) add("deep fold");
   if (!is_fault(kind)) add(kind == SC_CLASS_REST ? "as at rest" : sc_penetration_class_name(kind));
-  if (judged.before_mm >= 0) add(worse_text(judged));
-  if (!judged.rule.empty()) add(judged.rule);
-  if (is_fault(kind) && judged.state != EventState::kNew) add(state_name(judged.state));
+  if (evaluated.before_mm >= 0) add(worse_text(evaluated));
+  if (!evaluated.rule.empty()) add(evaluated.rule);
+  if (is_fault(kind) && evaluated.state != EventState::kNew) add(state_name(evaluated.state));
   return out.empty() ? out : out + "]";
 }
 
@@ -62,27 +62,27 @@ std::string frames_text(const Event& event) {
                      event.from > event.to ? " (over the loop)" : "");
 }
 
-std::string worse_text(const JudgedEvent& judged) {
-  return judged.before_mm < 0 ? std::string() : fmt::format("worse than {:.0f} mm", judged.before_mm);
+std::string worse_text(const EvaluatedEvent& evaluated) {
+  return evaluated.before_mm < 0 ? std::string() : fmt::format("worse than {:.0f} mm", evaluated.before_mm);
 }
 
 std::string check_text(const Verdict& verdict, bool lists_accepted) {
   std::vector<std::array<std::string, 4>> rows;
   std::array<std::size_t, 4> widths{};
   std::string errors;
-  for (const JudgedClip& clip : verdict.clips) {
+  for (const EvaluatedClip& clip : verdict.clips) {
     if (!clip.clip.error.empty()) {
       errors += clip.clip.error + (clip.clip.clip.empty() ? "" : "  (" + clip_text(clip) + ")") + "\n";
     }
-    for (const JudgedEvent& judged : clip.events) {
-      const Event& event = judged.event;
+    for (const EvaluatedEvent& evaluated : clip.events) {
+      const Event& event = evaluated.event;
       if (event.kind == SC_CLASS_TOUCH) continue;
-      if (judged.state == EventState::kAccepted && !lists_accepted) continue;
-      const std::string worst = event.from == event.to || judged.state == EventState::kResolved
+      if (evaluated.state == EventState::kAccepted && !lists_accepted) continue;
+      const std::string worst = event.from == event.to || evaluated.state == EventState::kResolved
                                     ? ""
                                     : fmt::format("  (worst at {})", frame_text(event.deepest));
       rows.push_back({clip_text(clip), frames_text(event), parts_text(event),
-                      fmt::format("{:.0f} mm{}{}", event.depth_mm, worst, marks(judged))});
+                      fmt::format("{:.0f} mm{}{}", event.depth_mm, worst, marks(evaluated))});
       for (std::size_t k = 0; k < 3; ++k) widths[k] = std::max(widths[k], rows.back()[k].size());
     }
   }

@@ -59,24 +59,24 @@ std::string uri(const std::string& path) {
   return out;
 }
 
-std::string fault_text(const JudgedEvent& judged) {
-  const Event& event = judged.event;
-  const std::string worse = worse_text(judged);
+std::string fault_text(const EvaluatedEvent& evaluated) {
+  const Event& event = evaluated.event;
+  const std::string worse = worse_text(evaluated);
   return fmt::format("{}: {}, {:.0f} mm deep at frame {}{}", frames_text(event), parts_text(event), event.depth_mm,
                      frame_text(event.deepest), worse.empty() ? worse : ", " + worse);
 }
 
-std::string testcase(const JudgedClip& clip) {
+std::string testcase(const EvaluatedClip& clip) {
   std::string out = fmt::format("  <testcase classname=\"{}\" name=\"{}\"", xml(clip.character),
                                 xml(clip.clip.clip.empty() ? "character" : clip.clip.clip));
   if (!clip.clip.error.empty()) return out + fmt::format("><error message=\"{}\"/></testcase>\n", xml(clip.clip.error));
   if (clip.clip.clip.empty()) return out + "><skipped message=\"no clips\"/></testcase>\n";
   std::string lines;
   int failing = 0;
-  for (const JudgedEvent& judged : clip.events) {
-    if (!judged.fails) continue;
+  for (const EvaluatedEvent& evaluated : clip.events) {
+    if (!evaluated.fails) continue;
     ++failing;
-    lines += fault_text(judged) + "\n";
+    lines += fault_text(evaluated) + "\n";
   }
   if (failing == 0) return out + "/>\n";
   return out + fmt::format("><failure message=\"{} {}\" type=\"penetration\">{}</failure></testcase>\n", failing,
@@ -88,9 +88,9 @@ std::string testcase(const JudgedClip& clip) {
 std::string check_junit(const Verdict& verdict) {
   int failures = 0;
   std::string cases;
-  for (const JudgedClip& clip : verdict.clips) {
+  for (const EvaluatedClip& clip : verdict.clips) {
     bool fails = false;
-    for (const JudgedEvent& judged : clip.events) fails = fails || judged.fails;
+    for (const EvaluatedEvent& evaluated : clip.events) fails = fails || evaluated.fails;
     failures += fails ? 1 : 0;
     cases += testcase(clip);
   }
@@ -102,7 +102,7 @@ std::string check_junit(const Verdict& verdict) {
 
 std::string check_sarif(const Verdict& verdict) {
   ordered_json results = ordered_json::array();
-  const auto add = [&](const JudgedClip& clip, const std::string& rule, const char* level,
+  const auto add = [&](const EvaluatedClip& clip, const std::string& rule, const char* level,
                        const std::string& text) -> ordered_json& {
     results.push_back({{"ruleId", rule},
                        {"level", level},
@@ -112,21 +112,21 @@ std::string check_sarif(const Verdict& verdict) {
                           {"logicalLocations", {{{"name", clip.clip.clip}, {"kind", "clip"}}}}}}}});
     return results.back();
   };
-  for (const JudgedClip& clip : verdict.clips) {
+  for (const EvaluatedClip& clip : verdict.clips) {
     if (!clip.clip.error.empty()) add(clip, "unreadable", "error", clip.clip.error);
-    for (const JudgedEvent& judged : clip.events) {
-      if (!is_fault(judged.event.kind)) continue;
-      const bool is_gone = judged.state == EventState::kResolved;
-      const char* level = judged.fails ? "error" : judged.severity == Severity::kIgnore ? "note" : "warning";
-      ordered_json& result = add(clip, sc_penetration_class_name(judged.event.kind), is_gone ? "none" : level,
-                                 clip.clip.clip + ", " + fault_text(judged));
-      result["baselineState"] = is_gone                            ? "absent"
-                                : judged.before_mm >= 0            ? "updated"
-                                : judged.state == EventState::kNew ? "new"
-                                                                   : "unchanged";
-      if (judged.state == EventState::kAccepted || !judged.rule.empty()) {
+    for (const EvaluatedEvent& evaluated : clip.events) {
+      if (!is_fault(evaluated.event.kind)) continue;
+      const bool is_gone = evaluated.state == EventState::kResolved;
+      const char* level = evaluated.fails ? "error" : evaluated.severity == Severity::kIgnore ? "note" : "warning";
+      ordered_json& result = add(clip, sc_penetration_class_name(evaluated.event.kind), is_gone ? "none" : level,
+                                 clip.clip.clip + ", " + fault_text(evaluated));
+      result["baselineState"] = is_gone                               ? "absent"
+                                : evaluated.before_mm >= 0            ? "updated"
+                                : evaluated.state == EventState::kNew ? "new"
+                                                                      : "unchanged";
+      if (evaluated.state == EventState::kAccepted || !evaluated.rule.empty()) {
         result["suppressions"] = {
-            {{"kind", "external"}, {"justification", judged.rule.empty() ? "accepted" : judged.rule}}};
+            {{"kind", "external"}, {"justification", evaluated.rule.empty() ? "accepted" : evaluated.rule}}};
       }
     }
   }

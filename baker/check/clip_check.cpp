@@ -49,7 +49,7 @@ bool same_pose(const Deformation& first, const Deformation& last, const BodyFram
 }
 
 struct ClipChecker::Frames {
-  std::vector<PartMeeting> meetings;             // by frame, then by parts
+  std::vector<FramePenetration> meetings;        // by frame, then by parts
   std::vector<std::vector<Triangles>> contacts;  // of a meeting that is shown: the triangles that intersect
   PageMotion motion;
   HiddenJoints hidden;
@@ -60,7 +60,7 @@ struct ClipChecker::Frames {
 ClipChecker::ClipChecker(const AnimatedAsset& animated, Target target)
     : animated_(animated),
       player_(animated.asset(), target),
-      parts_(parts_of(animated.asset())),
+      parts_(body_parts_of(animated.asset())),
       mm_(mm_per_unit(animated.asset())),
       axes_(page_axes(animated)),
       picture_(animated.character().source_positions, animated.character().source_triangles, axes_) {
@@ -85,12 +85,12 @@ ClipChecker::Triangles ClipChecker::triangles_of(const TriangleContact& contact)
 }
 
 // Every frame's contacts, measured quickly.
-ClipChecker::Frames ClipChecker::look(const ClipFrames& clip, const Told& told) {
+ClipChecker::Frames ClipChecker::look(const ClipFrames& clip, const Progress& progress) {
   take_sample();
   Frames out{{}, {}, PageMotion(animated_.character(), axes_), HiddenJoints(animated_), false, {}};
   Deformation first;
   for (int i = 0; i < clip.count; ++i) {
-    told(i, clip.count);
+    progress(i, clip.count);
     Deformation deformation = animated_.deformation(clip.first + i);
     const SkinPose skin(animated_, deformation);
     player_.set_pose(skin.pose());
@@ -118,7 +118,7 @@ ClipChecker::Frames ClipChecker::look(const ClipFrames& clip, const Told& told) 
 }
 
 // Measures a meeting in full: with its volume, and where it is no fault along many directions.
-void ClipChecker::measure(const ClipFrames& clip, PartMeeting& meeting, std::vector<Triangles>& triangles) {
+void ClipChecker::measure(const ClipFrames& clip, FramePenetration& meeting, std::vector<Triangles>& triangles) {
   const SkinPose skin(animated_, animated_.deformation(clip.first + meeting.frame));
   player_.set_pose(skin.pose());
   triangles.clear();
@@ -220,7 +220,7 @@ void ClipChecker::show(ClipCheck& out, const Frames& frames, const ClipFrames& c
   }
 }
 
-// Of faults alone, in the frames where they are one.
+// Sums up faults only, over the frames in which they are faults.
 std::vector<HeatSpot> ClipChecker::heat_of(const Frames& frames) const {
   struct Heat {
     HeatSpot spot;
@@ -246,9 +246,9 @@ std::vector<HeatSpot> ClipChecker::heat_of(const Frames& frames) const {
   return out;
 }
 
-ClipCheck ClipChecker::check(std::size_t index, const Told& told) {
+ClipCheck ClipChecker::check(std::size_t index, const Progress& progress) {
   const ClipFrames& clip = animated_.clips()[index];
-  Frames frames = look(clip, told);
+  Frames frames = look(clip, progress);
   std::vector<double> at;
   for (int i = 0; i < clip.count; ++i) at.push_back(animated_.number(clip.first + i));
   frames.spans = join_events(frames.meetings, at, frames.loops);

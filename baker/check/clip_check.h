@@ -31,17 +31,17 @@ class ClipChecker {
   ClipChecker(const AnimatedAsset& animated, Target target);
 
   // `done` frames of `all` were looked at.
-  using Told = std::function<void(int done, int all)>;
+  using Progress = std::function<void(int done, int all)>;
   // All frames of one of animated.clips().
-  ClipCheck check(std::size_t clip, const Told& told);
+  ClipCheck check(std::size_t clip, const Progress& progress);
 
  private:
   using Triangles = std::array<std::uint32_t, 2>;  // that intersect: of part_a and of part_b
   struct Frames;                                   // what was seen, frame by frame
   void take_sample();
   static Triangles triangles_of(const TriangleContact& contact);
-  Frames look(const ClipFrames& clip, const Told& told);
-  void measure(const ClipFrames& clip, struct PartMeeting& meeting, std::vector<Triangles>& triangles);
+  Frames look(const ClipFrames& clip, const Progress& progress);
+  void measure(const ClipFrames& clip, struct FramePenetration& meeting, std::vector<Triangles>& triangles);
   void find_worst(Frames& frames, const ClipFrames& clip, struct EventSpan& span);
   Event event_of(const Frames& frames, const struct EventSpan& span, const ClipFrames& clip) const;
   std::vector<HeatSpot> heat_of(const Frames& frames) const;

@@ -12,19 +12,19 @@ namespace {
 
 using Parts = std::pair<std::uint32_t, std::uint32_t>;
 
-Parts parts_of(const PartMeeting& meeting) { return std::minmax(meeting.found.part, meeting.found.other); }
+Parts part_pair_of(const FramePenetration& meeting) { return std::minmax(meeting.found.part, meeting.found.other); }
 
 bool is_bridged(double last, double next) { return next - last - 1 <= kGapMax; }
 
-void sort_events(std::vector<EventSpan>& spans, const std::vector<PartMeeting>& meetings) {
+void sort_events(std::vector<EventSpan>& spans, const std::vector<FramePenetration>& meetings) {
   const auto key = [&](const EventSpan& span) {
-    return std::tuple(span.from, parts_of(meetings[span.deepest]), span.to);
+    return std::tuple(span.from, part_pair_of(meetings[span.deepest]), span.to);
   };
   std::sort(spans.begin(), spans.end(), [&](const EventSpan& l, const EventSpan& r) { return key(l) < key(r); });
 }
 
 // The last event of a loop goes on as the first where no more than a gap lies between.
-void close_loop(std::vector<EventSpan>& spans, int frames, const std::vector<PartMeeting>& meetings) {
+void close_loop(std::vector<EventSpan>& spans, int frames, const std::vector<FramePenetration>& meetings) {
   if (spans.size() < 2) return;
   const int period = frames - 1;
   EventSpan &first = spans.front(), &last = spans.back();
@@ -38,11 +38,11 @@ void close_loop(std::vector<EventSpan>& spans, int frames, const std::vector<Par
 
 }  // namespace
 
-std::vector<EventSpan> join_events(const std::vector<PartMeeting>& meetings, int frames, bool loops) {
+std::vector<EventSpan> join_events(const std::vector<FramePenetration>& meetings, int frames, bool loops) {
   std::map<Parts, std::vector<EventSpan>> by_parts;
   for (std::size_t i = 0; i < meetings.size(); ++i) {
-    const PartMeeting& meeting = meetings[i];
-    std::vector<EventSpan>& spans = by_parts[parts_of(meeting)];
+    const FramePenetration& meeting = meetings[i];
+    std::vector<EventSpan>& spans = by_parts[part_pair_of(meeting)];
     if (spans.empty() || !is_bridged(spans.back().to, meeting.frame)) {
       spans.push_back({meeting.frame, meeting.frame, i, {i}});
       continue;
@@ -61,14 +61,14 @@ std::vector<EventSpan> join_events(const std::vector<PartMeeting>& meetings, int
   return out;
 }
 
-std::vector<EventSpan> join_events(const std::vector<PartMeeting>& meetings, const std::vector<double>& numbers,
+std::vector<EventSpan> join_events(const std::vector<FramePenetration>& meetings, const std::vector<double>& numbers,
                                    bool loops) {
   const auto number = [&](std::size_t m) { return numbers[static_cast<std::size_t>(meetings[m].frame)]; };
-  std::vector<PartMeeting> whole;
+  std::vector<FramePenetration> whole;
   std::vector<std::size_t> place;                      // of those in `meetings`
   std::map<Parts, std::vector<std::size_t>> by_parts;  // all
   for (std::size_t m = 0; m < meetings.size(); ++m) {
-    by_parts[parts_of(meetings[m])].push_back(m);
+    by_parts[part_pair_of(meetings[m])].push_back(m);
     if (is_between(number(m))) continue;
     whole.push_back({static_cast<int>(number(m)), meetings[m].found});
     place.push_back(m);

@@ -9,7 +9,7 @@
 namespace spherechain::baker {
 
 // Two body parts that meet in a frame of a clip.
-struct PartMeeting {
+struct FramePenetration {
   int frame;
   Penetration found;
 };
@@ -26,12 +26,12 @@ struct EventSpan {
 
 // `meetings` are those of a clip of `frames` frames, by frame. `loops`: its last frame is its first again. Returns the
 // events by where they begin, then by parts.
-std::vector<EventSpan> join_events(const std::vector<PartMeeting>& meetings, int frames, bool loops);
+std::vector<EventSpan> join_events(const std::vector<FramePenetration>& meetings, int frames, bool loops);
 
 // The same of a clip that has frames between its own: `numbers` has the number of each, with a fraction between two.
 // Meetings between frames join the event of whole frames that they border on, or are events of their own. Events of
 // whole frames stay apart: each is in the answer as it is without the frames between.
-std::vector<EventSpan> join_events(const std::vector<PartMeeting>& meetings, const std::vector<double>& numbers,
+std::vector<EventSpan> join_events(const std::vector<FramePenetration>& meetings, const std::vector<double>& numbers,
                                    bool loops);
 inline bool is_between(double number) { return number != static_cast<double>(static_cast<long>(number)); }
 

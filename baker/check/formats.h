@@ -10,7 +10,7 @@ namespace spherechain::baker {
 // A verdict for people, as a linter prints it: all faults, or those that are not accepted.
 std::string check_text(const Verdict& verdict, bool lists_accepted);
 // "worse than 40 mm": a known event was no deeper; else empty.
-std::string worse_text(const JudgedEvent& judged);
+std::string worse_text(const EvaluatedEvent& evaluated);
 
 // For pipelines (docs/json.md), CI servers (JUnit XML) and code review (SARIF 2.1.0).
 std::string check_json(const Verdict& verdict);

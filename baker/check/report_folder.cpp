@@ -27,23 +27,23 @@ using nlohmann::ordered_json;
 constexpr std::size_t kStripWidth = 100;
 
 // The deepest fault that no rule excuses, over the clip: bytes of half millimetres.
-std::string strip(const JudgedClip& clip) {
+std::string strip(const EvaluatedClip& clip) {
   const auto frames = static_cast<std::size_t>(clip.frames + clip.between);
   std::vector<std::uint8_t> out(std::clamp<std::size_t>(frames, 1, kStripWidth), 0);
-  for (const JudgedEvent& judged : clip.events) {
-    if (!judged.is_open()) continue;
-    for (std::size_t i = 0; i < judged.event.depths_mm.size(); ++i) {
-      const std::size_t frame = (static_cast<std::size_t>(judged.event.first_place) + i) % frames;
+  for (const EvaluatedEvent& evaluated : clip.events) {
+    if (!evaluated.is_open()) continue;
+    for (std::size_t i = 0; i < evaluated.event.depths_mm.size(); ++i) {
+      const std::size_t frame = (static_cast<std::size_t>(evaluated.event.first_place) + i) % frames;
       std::uint8_t& bar = out[frame * out.size() / frames];
-      bar = std::max(
-          bar, static_cast<std::uint8_t>(std::clamp(2.0 * static_cast<double>(judged.event.depths_mm[i]), 0.0, 255.0)));
+      bar = std::max(bar, static_cast<std::uint8_t>(
+                              std::clamp(2.0 * static_cast<double>(evaluated.event.depths_mm[i]), 0.0, 255.0)));
     }
   }
   return base64(out);
 }
 
-ordered_json page_event(const JudgedEvent& judged) {
-  const Event& event = judged.event;
+ordered_json page_event(const EvaluatedEvent& evaluated) {
+  const Event& event = evaluated.event;
   ordered_json out{{"parts", event.parts},
                    {"text", parts_text(event)},
                    {"class", sc_penetration_class_name(event.kind)},
@@ -52,28 +52,28 @@ ordered_json page_event(const JudgedEvent& judged) {
                    {"deepest", number_json(event.deepest)},
                    {"place", event.place},
                    {"mm", std::round(1000 * event.depth_mm) / 1000},
-                   {"state", state_name(judged.state)},
-                   {"fails", judged.fails}};
+                   {"state", state_name(evaluated.state)},
+                   {"fails", evaluated.fails}};
   if (event.volume_ml >= 0) out["ml"] = std::round(10 * event.volume_ml) / 10;
   if (event.eye) out["camera"] = {{"target", to_json(event.point)}, {"back", to_json(*event.eye)}};
-  if (!judged.rule.empty()) out["rule"] = judged.rule;
-  if (judged.before_mm >= 0) out["before"] = judged.before_mm;
+  if (!evaluated.rule.empty()) out["rule"] = evaluated.rule;
+  if (evaluated.before_mm >= 0) out["before"] = evaluated.before_mm;
   return out;
 }
 
 std::string data_name(const std::string& key) { return "data/" + key.substr(0, 2) + "/" + key.substr(2, 30); }
 
-// Of the worst fault that no rule excuses, as the library's row names it; else of the clip's first frame.
-std::size_t picture_of(const JudgedClip& clip) {
-  const JudgedEvent* worst = nullptr;
-  const auto badness = [](const JudgedEvent& e) { return std::pair(e.event.kind, e.event.depth_mm); };
-  for (const JudgedEvent& judged : clip.events) {
-    if (judged.is_open() && (worst == nullptr || badness(judged) > badness(*worst))) worst = &judged;
+// The frame of the worst fault that no rule excuses, as in the library's row; else the clip's first frame.
+std::size_t picture_of(const EvaluatedClip& clip) {
+  const EvaluatedEvent* worst = nullptr;
+  const auto badness = [](const EvaluatedEvent& e) { return std::pair(e.event.kind, e.event.depth_mm); };
+  for (const EvaluatedEvent& evaluated : clip.events) {
+    if (evaluated.is_open() && (worst == nullptr || badness(evaluated) > badness(*worst))) worst = &evaluated;
   }
   return worst == nullptr ? 0 : static_cast<std::size_t>(worst->event.picture);
 }
 
-ordered_json page_clip(const JudgedClip& clip) {
+ordered_json page_clip(const EvaluatedClip& clip) {
   ordered_json out{{"character", clip.character}, {"clip", clip.clip.clip}};
   if (!clip.clip.error.empty()) out["error"] = clip.clip.error;
   if (clip.clip.key.empty() || !clip.clip.error.empty()) return out;
@@ -86,9 +86,9 @@ ordered_json page_clip(const JudgedClip& clip) {
   out["picture"] = data_name(clip.clip.key) + picture_file(picture_of(clip));
   ordered_json& events = out["events"] = ordered_json::array();
   int minor = 0;
-  for (const JudgedEvent& judged : clip.events) {
-    if (is_fault(judged.event.kind) || judged.state == EventState::kResolved) {
-      events.push_back(page_event(judged));
+  for (const EvaluatedEvent& evaluated : clip.events) {
+    if (is_fault(evaluated.event.kind) || evaluated.state == EventState::kResolved) {
+      events.push_back(page_event(evaluated));
     } else {
       ++minor;
     }
@@ -101,11 +101,11 @@ ordered_json page_clip(const JudgedClip& clip) {
 // Where on a character's skin its faults are that no rule excuses, in all of its clips.
 class HeatMap {
  public:
-  void add(const std::string& bytes, const JudgedClip& clip) {
+  void add(const std::string& bytes, const EvaluatedClip& clip) {
     frames_ += clip.frames;
     std::set<std::size_t> open;
-    for (const JudgedEvent& judged : clip.events) {
-      if (judged.is_open()) open.insert(judged.number);
+    for (const EvaluatedEvent& evaluated : clip.events) {
+      if (evaluated.is_open()) open.insert(evaluated.number);
     }
     std::vector<HeatSpot> spots(bytes.size() / sizeof(HeatSpot));
     if (!spots.empty()) std::memcpy(spots.data(), bytes.data(), spots.size() * sizeof(HeatSpot));
@@ -150,7 +150,7 @@ bool write_report(const fs::path& folder, const Verdict& verdict, const Store& s
   ordered_json clips = ordered_json::array();
   std::map<std::string, HeatMap> heat;      // by character
   std::map<std::string, std::string> fits;  // by body
-  for (const JudgedClip& clip : verdict.clips) {
+  for (const EvaluatedClip& clip : verdict.clips) {
     clips.push_back(page_clip(clip));
     if (!clips.back().contains("data")) continue;
     take(clip.clip.key, kPageFile);

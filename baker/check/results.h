@@ -10,7 +10,7 @@
 #include "mesh/mesh.h"
 #include "play/skin_player.h"
 
-// What a check finds, before any rule: the same for the same character, clip, settings and tool.
+// Results of a check before any rule. They depend only on the character, clip, settings and tool.
 namespace spherechain::baker {
 
 struct Event {
@@ -46,7 +46,7 @@ struct HeatSpot {
   float depth_mm;  // of the deepest
 };
 
-// What a character's check needs to know of its asset.
+// The facts about an asset that the check of its character needs.
 struct CharacterResult {
   std::vector<std::string> clips;  // its own; unique
   std::string grade;               // of the spheres' fit

@@ -67,7 +67,7 @@ class ConfigReader {
     return {{text(parts[0], key), text(parts[1], key)}, depth(depth_mm, place + ": 'depth_mm'")};
   }
 
-  // What intersects in every pose is how the character is made, and no clip's fault.
+  // Pairs that intersect in every pose come from the character's design; no clip causes them.
   void filter(const json& path, std::vector<Rules::Allowed>& out) const {
     if (!path.is_string()) fail("'filter' is not the path of a file that filter wrote");
     const std::filesystem::path folder = std::filesystem::path(file_).parent_path();

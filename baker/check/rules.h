@@ -13,7 +13,7 @@ namespace spherechain::baker {
 
 enum class Severity { kError, kWarning, kIgnore };
 
-// What is fine in a library: the part of a check that a person decides.
+// Rules for a library, written by a person: which penetrations are acceptable.
 struct Rules {
   static constexpr double kAnyDepthMm = 1e6;
 
@@ -28,9 +28,9 @@ struct Rules {
   Severity penetration = Severity::kError, deep_fold = Severity::kWarning;
 
   bool leaves_out(const std::array<std::string, 2>& parts) const;
-  // What excuses a fault, in words; empty where nothing does.
+  // Says in words which rule excuses a fault. Empty if none does.
   std::string excuse(const Event& event) const;
-  // Of body parts, by all rules.
+  // Body parts that any rule names.
   std::vector<std::string> named_parts() const;
   Severity severity(PenetrationClass kind) const;
 };

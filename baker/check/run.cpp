@@ -248,7 +248,7 @@ class Run {
     task.work = [this, queue, at](const Task::Tell& tell) {
       check_clips(*queue, *at, options_, store_, motion_hashes_, tell);
     };
-    task.told = [this, queue, at](const std::string& line) {
+    task.on_line = [this, queue, at](const std::string& line) {
       if (line[0] == kNow) {
         tell_now(queue->character, line.substr(1));
       } else if (!*at) {
@@ -260,7 +260,7 @@ class Run {
     };
     task.ended = [this, &tasks, queue, at](const Ending& ending) {
       check_store(ending);
-      // What it was at when it failed does not keep the others from being checked.
+      // A clip that makes the process fail does not keep the other clips from being checked.
       if (*at) {
         const QueuedClip& queued = queue->clips[**at];
         const std::string& failure = ending.failure;

@@ -37,7 +37,7 @@ struct RunOptions {
   Shard shard;
 };
 
-// What a check calls the clips in a character's file.
+// Names that a check gives to the clips of a character's file.
 std::vector<std::string> unique_clip_names(const SourceRig& rig);
 
 // How far a run is.
@@ -57,7 +57,7 @@ std::vector<CheckedClip> check_library(const std::vector<LibraryCharacter>& libr
 // page, its pictures (picture_file), its HeatSpots.
 inline constexpr const char *kAssetFile = ".sphc", *kResultFile = ".json", *kPageFile = ".js", *kPictureFile = ".png",
                             *kHeatFile = ".heat";
-// Of a clip's picture of that number: 0 is kPictureFile.
+// The name of a clip's picture of that number: 0 is kPictureFile.
 std::string picture_file(std::size_t number);
 // Kinds of all files of a clip with that result.
 std::vector<std::string> files_of(const ClipResult& result);

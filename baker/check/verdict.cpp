@@ -21,7 +21,7 @@ class Judge {
     for (std::size_t i = 0; i < all_.size(); ++i) known_[{all_[i].character, all_[i].clip}].push_back(i);
   }
 
-  void events(JudgedClip& out, const ClipResult& result, const Rules& rules) const {
+  void events(EvaluatedClip& out, const ClipResult& result, const Rules& rules) const {
     std::vector<std::size_t> known;
     if (const auto found = known_.find({out.character, out.clip.clip}); found != known_.end()) known = found->second;
     std::set<std::size_t> there;
@@ -30,9 +30,9 @@ class Judge {
       if (rules.leaves_out(event.parts)) continue;
       if (is_counted_only(event.kind)) ++out.besides[event.kind];
       if (is_counted_only(event.kind) && !folds_) continue;
-      JudgedEvent judged{event, EventState::kKnown, rules.excuse(event), -1, Severity::kIgnore, false, i};
-      if (is_fault(event.kind)) judge_fault(judged, known, there, result.fps, rules);
-      out.events.push_back(std::move(judged));
+      EvaluatedEvent evaluated{event, EventState::kKnown, rules.excuse(event), -1, Severity::kIgnore, false, i};
+      if (is_fault(event.kind)) evaluate_fault(evaluated, known, there, result.fps, rules);
+      out.events.push_back(std::move(evaluated));
     }
     for (const std::size_t i : known) {
       if (there.contains(i) || rules.leaves_out(all_[i].parts) || !is_looked_for(all_[i], result)) continue;
@@ -41,14 +41,14 @@ class Judge {
   }
 
  private:
-  void judge_fault(JudgedEvent& out, const std::vector<std::size_t>& known, std::set<std::size_t>& there, double fps,
-                   const Rules& rules) const {
+  void evaluate_fault(EvaluatedEvent& out, const std::vector<std::size_t>& known, std::set<std::size_t>& there,
+                      double fps, const Rules& rules) const {
     out.state = EventState::kNew;
     for (const std::size_t i : known) {
       const KnownEvent& one = all_[i];
       if (!is_same(one, out.event, fps)) continue;
       there.insert(i);
-      // Of several the most that was approved.
+      // If several approved events match, the deepest one counts.
       if (is_worse(one, out.event)) {
         if (out.state != EventState::kNew) continue;
         if (one.depth_mm >= out.before_mm) out.known = i;
@@ -67,9 +67,9 @@ class Judge {
                                                                                 : false);
   }
 
-  JudgedEvent resolved(std::size_t number, double fps) const {
+  EvaluatedEvent resolved(std::size_t number, double fps) const {
     const KnownEvent& known = all_[number];
-    JudgedEvent out;
+    EvaluatedEvent out;
     out.known = number;
     out.state = EventState::kResolved;
     Event& event = out.event;
@@ -88,29 +88,29 @@ class Judge {
   std::map<ClipName, std::vector<std::size_t>> known_;  // numbers among all
 };
 
-void count(Summary& out, const JudgedClip& clip) {
+void count(Summary& out, const EvaluatedClip& clip) {
   ++out.clips;
   out.frames += clip.frames;
   out.seconds += clip.frames / clip.fps;
   for (const auto& [kind, number] : clip.besides) out.besides[kind] += number;
-  for (const JudgedEvent& judged : clip.events) {
-    if (judged.state == EventState::kResolved) {
+  for (const EvaluatedEvent& evaluated : clip.events) {
+    if (evaluated.state == EventState::kResolved) {
       ++out.resolved;
       continue;
     }
     ++out.events;
-    if (!judged.is_open()) continue;
-    ++(judged.event.kind == SC_CLASS_PENETRATION ? out.penetrations : out.deep_folds);
-    out.fresh += judged.state == EventState::kNew ? 1 : 0;
-    out.worse += judged.before_mm >= 0 ? 1 : 0;
-    out.accepted += judged.state == EventState::kAccepted ? 1 : 0;
+    if (!evaluated.is_open()) continue;
+    ++(evaluated.event.kind == SC_CLASS_PENETRATION ? out.penetrations : out.deep_folds);
+    out.fresh += evaluated.state == EventState::kNew ? 1 : 0;
+    out.worse += evaluated.before_mm >= 0 ? 1 : 0;
+    out.accepted += evaluated.state == EventState::kAccepted ? 1 : 0;
   }
 }
 
 }  // namespace
 
-Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<CharacterRules>& characters, const Store& store,
-              const Baseline& baseline, bool folds, FailOn fail_on) {
+Verdict evaluate_clips(const std::vector<CheckedClip>& clips, const std::vector<CharacterRules>& characters,
+                       const Store& store, const Baseline& baseline, bool folds, FailOn fail_on) {
   const Judge by(baseline, folds, fail_on);
   Verdict out;
   out.summary.characters = static_cast<int>(characters.size());
@@ -118,19 +118,19 @@ Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<Character
   std::set<std::string> noted;                  // of recordings, which several characters play
   for (const CheckedClip& clip : clips) {
     const CharacterRules& of = characters[clip.character];
-    JudgedClip judged{of.name, of.file, {}, {}, clip, 0, 0, 30, false, {}, {}};
+    EvaluatedClip evaluated{of.name, of.file, {}, {}, clip, 0, 0, 30, false, {}, {}};
     if (clip.error.empty() && !clip.clip.empty()) {
       const std::optional<ClipResult> result = read_clip_result(store.take(clip.key, kResultFile));
       if (!result) store.fail_lost();
-      judged.frames = result->frames;
-      judged.between = result->between;
-      judged.fps = result->fps;
-      judged.loops = result->loops;
-      const bool is_told = result->note.empty() || !noted.insert(clip.clip).second;
-      if (!is_told) out.notes.push_back(clip.clip + ": " + result->note);
+      evaluated.frames = result->frames;
+      evaluated.between = result->between;
+      evaluated.fps = result->fps;
+      evaluated.loops = result->loops;
+      const bool is_reported = result->note.empty() || !noted.insert(clip.clip).second;
+      if (!is_reported) out.notes.push_back(clip.clip + ": " + result->note);
       if (!result->unseen.empty()) out.notes.push_back(of.name + " " + clip.clip + ": " + result->unseen);
-      by.events(judged, *result, of.rules);
-      count(out.summary, judged);
+      by.events(evaluated, *result, of.rules);
+      count(out.summary, evaluated);
     }
     if (clip.error.empty() && !clip.character_key.empty()) {
       const auto [character, is_new] = read.try_emplace(clip.character_key);
@@ -139,14 +139,14 @@ Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<Character
         character->second = read_character_result(bytes).value_or(CharacterResult());
         for (const std::string& note : character->second.notes) out.notes.push_back(of.name + ": " + note);
       }
-      judged.grade = character->second.grade;
-      judged.fit = character->second.fit;
+      evaluated.grade = character->second.grade;
+      evaluated.fit = character->second.fit;
     }
-    out.summary.errors += judged.clip.error.empty() ? 0 : 1;
-    const bool is_broken = !judged.clip.error.empty() && fail_on != FailOn::kNone;
+    out.summary.errors += evaluated.clip.error.empty() ? 0 : 1;
+    const bool is_broken = !evaluated.clip.error.empty() && fail_on != FailOn::kNone;
     out.fails = out.fails || is_broken ||
-                std::any_of(judged.events.begin(), judged.events.end(), [](const auto& e) { return e.fails; });
-    out.clips.push_back(std::move(judged));
+                std::any_of(evaluated.events.begin(), evaluated.events.end(), [](const auto& e) { return e.fails; });
+    out.clips.push_back(std::move(evaluated));
   }
   std::set<std::string> parts, unknown;
   for (const auto& [key, character] : read) parts.insert(character.parts.begin(), character.parts.end());
@@ -165,23 +165,23 @@ Baseline accept(const Verdict& verdict, const Baseline& before) {
   Baseline out = before;
   std::vector<int> faults(before.events.size(), 0);  // of each entry: how many are the same as it
   std::vector<char> is_gone(before.events.size(), 0);
-  for (const JudgedClip& clip : verdict.clips) {
-    for (const JudgedEvent& judged : clip.events) {
-      if (judged.known == JudgedEvent::kNoNumber) continue;
-      ++faults[judged.known];
-      if (judged.state == EventState::kResolved) is_gone[judged.known] = 1;
+  for (const EvaluatedClip& clip : verdict.clips) {
+    for (const EvaluatedEvent& evaluated : clip.events) {
+      if (evaluated.known == EvaluatedEvent::kNoNumber) continue;
+      ++faults[evaluated.known];
+      if (evaluated.state == EventState::kResolved) is_gone[evaluated.known] = 1;
     }
   }
-  for (const JudgedClip& clip : verdict.clips) {
-    for (const JudgedEvent& judged : clip.events) {
-      const Event& event = judged.event;
-      if (!judged.is_open() || judged.state == EventState::kAccepted) continue;
+  for (const EvaluatedClip& clip : verdict.clips) {
+    for (const EvaluatedEvent& evaluated : clip.events) {
+      const Event& event = evaluated.event;
+      if (!evaluated.is_open() || evaluated.state == EventState::kAccepted) continue;
       KnownEvent accepted{clip.character,        clip.clip.clip,      event.parts,    event.kind,
                           event.from / clip.fps, event.to / clip.fps, event.depth_mm, EventState::kAccepted};
-      const bool is_one = judged.known != JudgedEvent::kNoNumber && faults[judged.known] == 1;
+      const bool is_one = evaluated.known != EvaluatedEvent::kNoNumber && faults[evaluated.known] == 1;
       if (is_one) {
-        accepted.entry = before.events[judged.known].entry;
-        out.events[judged.known] = std::move(accepted);
+        accepted.entry = before.events[evaluated.known].entry;
+        out.events[evaluated.known] = std::move(accepted);
       } else {
         out.events.push_back(std::move(accepted));
       }

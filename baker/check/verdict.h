@@ -13,7 +13,7 @@ namespace spherechain::baker {
 
 // A library's results by its rules and its baseline.
 
-struct JudgedEvent {
+struct EvaluatedEvent {
   Event event;
   EventState state = EventState::kNew;
   std::string rule;       // that excuses it; empty: none
@@ -27,14 +27,14 @@ struct JudgedEvent {
   bool is_open() const { return state != EventState::kResolved && is_fault(event.kind) && rule.empty(); }
 };
 
-struct JudgedClip {
+struct EvaluatedClip {
   std::string character, file, grade;  // name; path as given; grade of the fit
   std::string fit;                     // the grade as a sentence
   CheckedClip clip;
   int frames = 0, between = 0;  // as of a ClipResult
   double fps = 30;
   bool loops = false;
-  std::vector<JudgedEvent> events;          // those that are looked at, then the resolved ones
+  std::vector<EvaluatedEvent> events;       // those that are looked at, then the resolved ones
   std::map<PenetrationClass, int> besides;  // of classes that are counted only
 };
 
@@ -47,7 +47,7 @@ struct Summary {
 };
 
 struct Verdict {
-  std::vector<JudgedClip> clips;
+  std::vector<EvaluatedClip> clips;
   Summary summary;
   std::vector<std::string> notes;  // what may mislead: units, rules for parts that no character has
   bool fails = false;              // an event does, or a file cannot be checked
@@ -62,8 +62,8 @@ struct CharacterRules {
 };
 
 // `folds`: folds, shells and contacts as at rest are listed too. Results come from `store`.
-Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<CharacterRules>& characters, const Store& store,
-              const Baseline& baseline, bool folds, FailOn fail_on);
+Verdict evaluate_clips(const std::vector<CheckedClip>& clips, const std::vector<CharacterRules>& characters,
+                       const Store& store, const Baseline& baseline, bool folds, FailOn fail_on);
 
 // `before`, which the verdict is by, with all faults of these clips accepted that no rule excuses. An entry is left out
 // if it was looked for and is resolved. One that is accepted already stays as it is, and so does one that a rule

@@ -96,7 +96,7 @@ class Child {
       const std::string line = text_.substr(1, end - 1);
       text_.erase(0, end + 1);
       if (kind == kTold) {
-        task_.told(line);
+        task_.on_line(line);
       } else {
         ending_ = {line, kind != kException, kind == kStopped};
       }

@@ -17,14 +17,14 @@ struct Ending {
 // Work for a process of its own, so that nothing it meets can end this one.
 struct Task {
   using Tell = std::function<void(const std::string& line)>;
-  std::function<void(const Tell& tell)> work;         // in the child; what it throws ends it
-  std::function<void(const std::string& line)> told;  // here: a line that the child told; ends of lines are spaces
-  std::function<void(const Ending& ending)> ended;    // here; may add tasks
+  std::function<void(const Tell& tell)> work;            // in the child; what it throws ends it
+  std::function<void(const std::string& line)> on_line;  // here: a line that the child wrote; ends of lines are spaces
+  std::function<void(const Ending& ending)> ended;       // here; may add tasks
   bool was_killed = false;
 };
 
 // Runs all tasks, `jobs` at a time. A child that is killed from outside is started once more. `tick` is called a few
-// times a second. Children end where this process does, or where this throws what `told` or `ended` threw.
+// times a second. Children end where this process does, or where this throws what `on_line` or `ended` threw.
 void run_in_children(std::deque<Task>& tasks, int jobs, const std::function<void()>& tick);
 
 }  // namespace spherechain::baker

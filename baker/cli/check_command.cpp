@@ -138,10 +138,10 @@ Verdict report(const CheckOptions& options, const std::vector<CheckedClip>& clip
                const std::vector<CharacterRules>& characters, Baseline baseline, const Store& store,
                const fs::path& pages) {
   const FailOn fail_on = parse_fail_on(options.fail_on);
-  Verdict verdict = judge(clips, characters, store, baseline, options.folds, fail_on);
+  Verdict verdict = evaluate_clips(clips, characters, store, baseline, options.folds, fail_on);
   if (options.accept) {
     baseline = accept(verdict, baseline);
-    verdict = judge(clips, characters, store, baseline, options.folds, fail_on);
+    verdict = evaluate_clips(clips, characters, store, baseline, options.folds, fail_on);
   }
   const bool has_pages = write_report(options.output, verdict, store, pages);
   if (!options.json.empty()) write_atomically(options.json, check_json(verdict));

@@ -140,7 +140,7 @@ ExitCode run_export(const ExportOptions& options) {
     throw Error(ExitCode::kUsage, "--to " + options.format + " needs --source");
   }
   check_ending(format, options.output);
-  // What is wrong with a file is said before the fit, which takes seconds.
+  // Errors in the files are reported before the fit, which takes seconds.
   const OpenAsset asset = open_asset(options.asset);
   std::optional<PartFilter> filter;
   if (!options.filter.empty()) filter = read_part_filter(options.filter, asset);

@@ -87,16 +87,16 @@ ExitCode run_filter(const FilterOptions& options) {
   FilterSearch search(animated, choose_target("auto"));
   {
     Progress progress("filter " + options.asset + ":");
-    const auto told = [&](const char* what, int count) {
+    const auto count_poses = [&](const char* what, int count) {
       return [&progress, what, count](int done) { progress.show(fmt::format("{} {} of {}", what, done, count)); };
     };
-    if (!animated.character().rig.clips.empty()) search.look_at_frames(told("frame", animated.frame_count()));
+    if (!animated.character().rig.clips.empty()) search.look_at_frames(count_poses("frame", animated.frame_count()));
     if (!options.motion.empty()) {
       animated.play(recording, own_frames);
-      search.look_at_frames(told("frame", animated.frame_count()));
+      search.look_at_frames(count_poses("frame", animated.frame_count()));
     }
     if (poses.any() && animated.asset()->bone_count() > 0) {
-      search.look_at_random(poses, options.poses, told("random pose", options.poses));
+      search.look_at_random(poses, options.poses, count_poses("random pose", options.poses));
     }
   }
   const PartFilter filter = search.result();

@@ -51,7 +51,7 @@ CLI::Option* add_output(CLI::App& command, const std::string& option, std::strin
   return add_name(command, option, name, description)->check(refuse_dash);
 }
 
-// What is printed and cannot be written (a full disk, a closed file) is an output that cannot be written.
+// Output that cannot be printed (full disk, closed file) counts as an output that cannot be written.
 int flush(int code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
   return fail(ExitCode::kFile, "standard output: cannot be written");
@@ -339,7 +339,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::CallForVersion& version) {
     return flush(app.exit(version));
   } catch (const CLI::ParseError& error) {
-    // Of a command that it does not know the library says only that one is missing.
+    // For an unknown command, the library says only that a command is missing.
     const std::vector<std::string> unknown = app.remaining();
     const std::string what = unknown.empty() ? error.what() : "there is no command or option '" + unknown.front() + "'";
     const std::vector<CLI::App*> named = app.get_subcommands();

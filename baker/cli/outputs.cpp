@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of `place`, where `file` leads.
+// Checks the folder of `place`, the path that `file` leads to.
 void check_folder(const std::string& file, const fs::path& place) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) throw Error(ExitCode::kFile, file + ": cannot be written (it is a folder)");

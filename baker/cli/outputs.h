@@ -10,7 +10,7 @@ namespace spherechain::baker {
 
 struct MotionChoice;
 
-// What a command asks of its files before the work that takes seconds.
+// Checks that a command makes on its files before the work that takes seconds.
 
 // A file that a command reads, by the name that the usage has for it ("INPUT", "--config"). An empty path
 // stands for an option that was not given.

@@ -30,7 +30,7 @@ fs::path viewer_template() {
   return page;
 }
 
-// What is read of the two characters.
+// Files that the command reads for the two characters.
 std::vector<CommandFile> inputs_of(const ViewOptions& options, const std::string& with_source_file) {
   std::vector<CommandFile> inputs{{"ASSET", options.asset},
                                   {"--report", options.report},

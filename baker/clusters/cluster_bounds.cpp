@@ -22,8 +22,8 @@ Ball ball_around(const Mesh& points) {
 }
 
 // Around the points as the asset has them.
-Box box_around(const Mesh& points) {
-  Box out{Vec3::Zero(), Vec3::Zero(), 0};
+ClusterBox box_around(const Mesh& points) {
+  ClusterBox out{Vec3::Zero(), Vec3::Zero(), 0};
   std::vector<Vec3> from_center(points.positions.size());
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     std::vector<float> places;

@@ -33,7 +33,7 @@ struct SurfaceVertex {
 };
 
 // A box along the axes that contains its points to the last bit. All values are exactly representable as float.
-struct Box {
+struct ClusterBox {
   Vec3 center, half;
   double radius;  // distance of the farthest point from the centre
 };
@@ -55,11 +55,11 @@ struct ClusterMorph {
 // last bit.
 struct Cluster {
   std::uint32_t sphere;
-  std::vector<Index> triangles;            // of Character::skin, in the order of their source triangles
-  std::vector<Index> vertices;             // of Clusters::vertices, ascending; at most 255
-  Ball ball{Vec3::Zero(), 0};              // around them at rest
-  Box box{Vec3::Zero(), Vec3::Zero(), 0};  // the same, along the axes
-  std::vector<ClusterBone> bones;          // ascending
+  std::vector<Index> triangles;                   // of Character::skin, in the order of their source triangles
+  std::vector<Index> vertices;                    // of Clusters::vertices, ascending; at most 255
+  Ball ball{Vec3::Zero(), 0};                     // around them at rest
+  ClusterBox box{Vec3::Zero(), Vec3::Zero(), 0};  // the same, along the axes
+  std::vector<ClusterBone> bones;                 // ascending
   std::vector<ClusterMorph> morphs;
 };
 

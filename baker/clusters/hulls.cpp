@@ -21,7 +21,7 @@ constexpr int kStepsMax = 100;
 constexpr double kRounding = 1e-13;  // more than double precision takes from shares and sums, of lengths of 1
 
 // A sphere's vertices as the asset has them: their places, seen from the hull's centre, and their weights.
-struct Skin {
+struct HullSkin {
   std::vector<Index> vertices;
   std::vector<Index> bones;  // the one that moves most of them first
   Vec3 center;
@@ -42,8 +42,8 @@ std::vector<Index> moving_bones(const std::vector<SurfaceVertex>& all, const std
   return out;
 }
 
-Skin skin_of(const Character& character, const std::vector<SurfaceVertex>& all, std::vector<Index> vertices) {
-  Skin out;
+HullSkin skin_of(const Character& character, const std::vector<SurfaceVertex>& all, std::vector<Index> vertices) {
+  HullSkin out;
   if (vertices.empty()) return out;
   std::ranges::sort(vertices);
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
@@ -71,7 +71,7 @@ Skin skin_of(const Character& character, const std::vector<SurfaceVertex>& all, 
 
 // Vertices as points of many dimensions: the place of a vertex, and its weighted place for each bone but the first one,
 // which the others are relative to. A weight counts as much as the hull's radius: that is how far bones come apart.
-Eigen::MatrixXd lift(const Skin& skin) {
+Eigen::MatrixXd lift(const HullSkin& skin) {
   const auto bones = static_cast<Eigen::Index>(skin.bones.size());
   Eigen::MatrixXd out(4 * bones - 1, static_cast<Eigen::Index>(skin.vertices.size()));
   for (Eigen::Index v = 0; v < out.cols(); ++v) {
@@ -214,7 +214,7 @@ NearestMeans choose_points(const Eigen::MatrixXd& vertices, double near) {
 }
 
 // Measures how far the vertices are from their means: the differences of w_b (v - center; 1), bone by bone.
-void measure(const Skin& skin, const NearestMeans& means, Hull& out) {
+void measure(const HullSkin& skin, const NearestMeans& means, Hull& out) {
   std::vector<Eigen::Vector4d> most(skin.bones.size(), Eigen::Vector4d::Zero());
   double slack = 0;
   for (std::size_t v = 0; v < skin.vertices.size(); ++v) {
@@ -239,7 +239,7 @@ void measure(const Skin& skin, const NearestMeans& means, Hull& out) {
   out.slack = round_up(slack + kRounding * skin.radius);
 }
 
-Hull hull_of(const Skin& skin, double near) {
+Hull hull_of(const HullSkin& skin, double near) {
   Hull out;
   if (skin.vertices.empty()) return out;
   const Eigen::MatrixXd lifted = lift(skin);
@@ -256,7 +256,7 @@ Hull hull_of(const Skin& skin, double near) {
 
 std::vector<Hull> make_hulls(const Character& character, const std::vector<SurfaceVertex>& vertices,
                              std::vector<std::vector<Index>> of_spheres) {
-  std::vector<Skin> skins;
+  std::vector<HullSkin> skins;
   double radii = 0;
   for (std::vector<Index>& of_sphere : of_spheres) {
     skins.push_back(skin_of(character, vertices, std::move(of_sphere)));
@@ -264,7 +264,7 @@ std::vector<Hull> make_hulls(const Character& character, const std::vector<Surfa
   }
   const double near = kNear * radii / static_cast<double>(skins.size());
   std::vector<Hull> out;
-  for (const Skin& skin : skins) out.push_back(hull_of(skin, near));
+  for (const HullSkin& skin : skins) out.push_back(hull_of(skin, near));
   return out;
 }
 

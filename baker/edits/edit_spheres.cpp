@@ -25,7 +25,7 @@ constexpr std::size_t kNamesMax = 16;  // of regions, in a line
 
 constexpr std::size_t kNoEdit = ~std::size_t{0};
 
-// What happens to a fitted sphere, or where a new one comes in.
+// The change to one fitted sphere, or the place at which a new sphere is inserted.
 struct Change {
   std::size_t edit;
   bool deletes;

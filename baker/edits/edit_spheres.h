@@ -10,7 +10,7 @@
 
 namespace spherechain::baker {
 
-// What became of edits.
+// Result of applying edits.
 struct EditsDone {
   std::size_t applied = 0;
   std::vector<std::string> missed;  // a line each: which edit was not applied, or not as it says, and why

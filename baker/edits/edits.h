@@ -27,7 +27,7 @@ struct SphereEdit {
   bool operator==(const SphereEdit&) const = default;
 };
 
-// What `bake --edits` applies (docs/formats.md#edits).
+// Edits that `bake --edits` applies (docs/formats.md#edits).
 struct Edits {
   std::vector<SphereEdit> spheres;
   std::vector<std::array<std::string, 2>> ignored_parts;

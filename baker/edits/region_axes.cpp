@@ -68,7 +68,7 @@ RegionAxes axes_of(const BodyFrame& frame, const std::vector<Vec3>& positions, c
   out.length = triangles.empty() ? frame.height : std::max(high - low, 1e-9 * frame.height);
   const double away = out.axis.dot(moments.centroid - middle);
   const bool has_outer_end = std::abs(away) > kAway * out.length;
-  // Of what is in the middle: up, or else forward.
+  // Axes of regions in the middle point up, or else forward.
   const double sign = has_outer_end ? away : out.axis.dot(frame.up + 0.5 * frame.forward + 0.1 * frame.left);
   if (sign < 0) {
     out.axis = -out.axis;

@@ -20,8 +20,8 @@ struct RegionAxes {
   Vec3 point(const SpherePlace& place) const;
 };
 
-// Of each of `count` regions. `of_skin`: the region of each triangle of the skin, which is in its rest pose. An axis
-// points away from the middle of all skin.
+// Computes the axes of `count` regions. `of_skin` holds the region of each triangle of the skin, which is in its rest
+// pose. An axis points away from the middle of all skin.
 std::vector<RegionAxes> region_axes(const BodyFrame& frame, const Mesh& skin, const std::vector<std::uint8_t>& of_skin,
                                     std::size_t count);
 

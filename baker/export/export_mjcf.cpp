@@ -66,7 +66,7 @@ struct MjcfWriter {
   }
 };
 
-// Of the volumes at rest, in the upright world.
+// Bounding box of the volumes at rest, in the upright world.
 Eigen::AlignedBox3d bounds_of(const Colliders& colliders) {
   const Eigen::Isometry3d up(to_z_up(colliders));
   Eigen::AlignedBox3d out;

@@ -29,7 +29,7 @@ struct ColliderGroup {
   std::vector<Volume> volumes;
 };
 
-// What the notes say.
+// Counts for the notes about what the export lost.
 struct VrmLosses {
   int replaced = 0, made = 0;     // volumes, and those in their place
   double off = 0;                 // metres

@@ -10,13 +10,13 @@
 // where something is lost.
 namespace spherechain::baker {
 
-// Of a cone of which one ball holds the other, that ball. Nothing is lost.
+// Replaces a cone by its larger ball if that ball contains the smaller one. This is exact.
 void use_balls(Colliders& colliders);
 
-// Of each cone the capsule of its mean radius.
+// Replaces each cone by a capsule of the cone's mean radius.
 void use_capsules_for_cones(Colliders& colliders, std::vector<std::string>& notes);
 
-// Of each ellipsoid the capsule along its longest axis, as long, of the mean of its other radii.
+// Replaces each ellipsoid by a capsule: as long as its longest axis, with the mean of its other radii.
 void use_capsules_for_ellipsoids(Colliders& colliders, std::vector<std::string>& notes);
 
 // Drops bodies that have no bone or no volume. Throws Error(kFile) where none is left.

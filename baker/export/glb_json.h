@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-// What is written into somebody's GLB: a change of its JSON. Every other byte stays.
+// Changes the JSON of an existing GLB. Every other byte stays.
 namespace spherechain::baker {
 
 // Its JSON, members in their order. Throws Error(kInternal) where it has none.

@@ -17,7 +17,7 @@ constexpr double kWater = 1000;  // kg per cubic metre
 
 bool is_in_identifier(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; }
 
-// What several bodies hold at rest is shared among them.
+// Volumes that several bodies contain at rest are divided among these bodies.
 SolidMass mass_of(const Colliders& colliders, std::size_t body) {
   SolidMass out;
   Vec3 moment = Vec3::Zero();

@@ -7,8 +7,8 @@
 
 #include "export/formats.h"
 
-// What the robotics formats share: names, masses, joints, and balls in place of solids that a format does not have.
-// World: metres, +Z up, the character looks along +X (to_z_up).
+// Common parts of the robotics formats: names, masses, joints, and balls in place of solids that a format lacks. World:
+// metres, +Z up, the character looks along +X (to_z_up).
 namespace spherechain::baker {
 
 // In a body's frame; the inertia is that around the centre.
@@ -33,7 +33,7 @@ Colliders with_balls(const Colliders& colliders, bool (*stays)(const Volume&), s
 // Identifiers of the bodies, each once.
 std::vector<std::string> link_names(const Colliders& colliders);
 
-// Of the file that the character came from.
+// The robot's name, made of the name of the character's file.
 std::string robot_name(const Colliders& colliders);
 
 // A joint of one axis. Ball joints become three of these with links without volumes between them, and what hangs on
@@ -47,7 +47,7 @@ struct RobotJoint {
 inline constexpr const char* kBaseLink = "base_link";
 std::vector<RobotJoint> robot_joints(const Colliders& colliders);
 
-// Of colliders that hold balls and boxes only.
+// Writes URDF. The colliders may hold balls and boxes only.
 std::string urdf_of(const Colliders& colliders);
 
 std::string xml_number(double value);

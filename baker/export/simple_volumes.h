@@ -8,7 +8,7 @@
 // Volumes for formats that have few kinds of them.
 namespace spherechain::baker {
 
-// What stands for a volume, and how far the two surfaces are apart at most, in metres; 0: it is the same solid.
+// Replacements for one volume, and the largest distance between the surfaces in metres. 0: the same solid.
 struct SimpleVolumes {
   std::vector<Volume> volumes;
   double off = 0;

@@ -22,7 +22,8 @@ FilterSearch::FilterSearch(const AnimatedAsset& animated, Target target)
 }
 
 // Block by block: within one the threads share the poses, and after it the pairs are counted in the poses' order.
-void FilterSearch::look(int count, const std::function<Deformation(int)>& pose, const Told& told, Tally& tally) const {
+void FilterSearch::look(int count, const std::function<Deformation(int)>& pose, const Progress& progress,
+                        Tally& tally) const {
   constexpr int kBlock = 256;
   tbb::enumerable_thread_specific<TouchingParts> finders([&] { return TouchingParts(animated_, skin_, target_); });
   std::vector<std::vector<bool>> touching(kBlock);
@@ -45,23 +46,23 @@ void FilterSearch::look(int count, const std::function<Deformation(int)>& pose, 
       }
       ++tally.count;
     }
-    told(end);
+    progress(end);
   }
 }
 
-void FilterSearch::look_at_frames(const Told& told) {
+void FilterSearch::look_at_frames(const Progress& progress) {
   look(
-      animated_.frame_count(), [&](int i) { return animated_.deformation(i); }, told, clips_);
+      animated_.frame_count(), [&](int i) { return animated_.deformation(i); }, progress, clips_);
 }
 
-void FilterSearch::look_at_random(const RandomPoses& poses, int count, const Told& told) {
+void FilterSearch::look_at_random(const RandomPoses& poses, int count, const Progress& progress) {
   constexpr int kWithinLimits = 2;
   const auto pose = [&](int i) {
     Random random(static_cast<std::uint64_t>(i) + 1);
     RandomPoses::Pose out = poses.next(random, kWithinLimits, 0);
     return Deformation{std::move(out.bones), std::move(out.morphs), {}};
   };
-  look(count, pose, told, random_);
+  look(count, pose, progress, random_);
 }
 
 PartFilter FilterSearch::result() const {

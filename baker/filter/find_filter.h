@@ -12,18 +12,18 @@
 namespace spherechain::baker {
 
 // Looks at a character in many poses, on all cores, and says what each two of its body parts do. The same poses in any
-// number of threads give the same answer. `told`, from time to time, is given how many are done.
+// number of threads give the same answer. `progress`, from time to time, is given how many are done.
 class FilterSearch {
  public:
-  using Told = std::function<void(int done)>;
+  using Progress = std::function<void(int done)>;
 
   // The asset must have clusters. Looks at the rest pose.
   FilterSearch(const AnimatedAsset& animated, Target target);
 
   // All frames that `animated` plays now.
-  void look_at_frames(const Told& told);
+  void look_at_frames(const Progress& progress);
   // `count` poses, each joint turned on its own, evenly within its limits. Pose i is the same whatever the count.
-  void look_at_random(const RandomPoses& poses, int count, const Told& told);
+  void look_at_random(const RandomPoses& poses, int count, const Progress& progress);
 
   PartFilter result() const;
 
@@ -33,7 +33,7 @@ class FilterSearch {
     std::vector<int> touching;                     // of pair after pair: poses in which they touch
     std::vector<int> first_touching, first_apart;  // of pair after pair: number of the pose; INT_MAX: none
   };
-  void look(int count, const std::function<Deformation(int)>& pose, const Told& told, Tally& tally) const;
+  void look(int count, const std::function<Deformation(int)>& pose, const Progress& progress, Tally& tally) const;
   std::size_t pair_count() const { return parts_ * (parts_ - 1) / 2; }
 
   const AnimatedAsset& animated_;

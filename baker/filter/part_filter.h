@@ -9,7 +9,7 @@
 
 namespace spherechain::baker {
 
-// What two body parts do in the poses seen. The first that holds, in this order:
+// Relation of two body parts over the poses seen. The first that applies, in this order:
 enum class PairKind {
   kAdjacent,   // one hangs on the other
   kAlways,     // their skins intersect in every pose
@@ -46,10 +46,10 @@ std::vector<Pair> idle_sphere_pairs(const OpenAsset& asset, const PartFilter& fi
 // docs/json.md; `asset_name` is for people.
 std::string part_filter_json(const PartFilter& filter, const OpenAsset& asset, const std::string& asset_name);
 
-// What `filter` wrote. Throws Error(kFile) that names the file: it is broken, names a part that the asset does not
-// have, or lacks a pair.
+// Reads a file that `filter` wrote. Throws Error(kFile) with the file's name if it is broken, lacks a pair, or names a
+// part that the asset does not have.
 PartFilter read_part_filter(const std::string& path, const OpenAsset& asset);
-// Of whatever asset: `parts` are those that the file names.
+// Reads a filter without its asset: `parts` are the parts that the file names.
 PartFilter read_part_filter(const std::string& path);
 
 }  // namespace spherechain::baker

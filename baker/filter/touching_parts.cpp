@@ -9,7 +9,7 @@
 namespace spherechain::baker {
 
 std::vector<std::vector<std::uint8_t>> parts_of_spheres(const OpenAsset& asset) {
-  const BodyParts parts = parts_of(asset);
+  const BodyParts parts = body_parts_of(asset);
   std::vector<std::vector<std::uint8_t>> out(asset->spheres().size);
   for (std::size_t s = 0; s < out.size(); ++s) {
     for (const std::uint32_t t : asset.triangles_of(s)) out[s].push_back(parts.of_triangle[t]);

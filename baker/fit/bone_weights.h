@@ -11,7 +11,7 @@ namespace spherechain::baker {
 // How much each bone moves some skin: the mean of its vertices' weights by area.
 using BoneWeights = boost::container::flat_map<Index, double>;
 
-// Of triangles of Character::skin; empty where the source has no bones.
+// Mean bone weights of triangles of Character::skin. Empty if the source has no bones.
 BoneWeights mean_weights(const Character& character, const std::vector<Index>& triangles);
 
 // From 0, no bone moves both, to 1, all bones move both as much.

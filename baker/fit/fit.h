@@ -57,7 +57,7 @@ struct Spheres {
   // Neighbours on the body, a < b, sorted: along a limb, on the same or the next torso level, limb and torso, neck and
   // torso. By halves: of a part and the one it hangs on, where their skins are joined, and of skin that moves alike.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
-  // Of a tree: a triangle of Character::skin -> the sphere that was fitted to it. Else empty.
+  // For a tree: the sphere fitted to each triangle of Character::skin. Else empty.
   std::vector<std::uint32_t> of_skin;
 
   std::uint8_t torso_region() const { return static_cast<std::uint8_t>(of_region.size() - 1); }
@@ -117,7 +117,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_links(const Character&
 std::vector<std::size_t> share_triangles(const Mesh& skin, const BodyFrame& frame, const std::vector<Index>& triangles,
                                          const std::vector<Ball>& balls);
 
-// Of some spheres the one whose centre is nearest.
+// The sphere in `among` whose centre is nearest to `point`.
 std::uint32_t nearest_sphere(const Spheres& spheres, const std::vector<std::uint32_t>& among, const Vec3& point);
 
 // fit_spheres' parts. `body` searches all of the mesh.

@@ -15,10 +15,10 @@
 namespace spherechain::baker {
 namespace {
 
-// Of the limb's last sphere: a heel's point is no start for a chain of growing spheres.
+// Share of the limb's last sphere: a chain of growing spheres cannot start at a heel's point.
 constexpr double kThinExtremity = 0.25;
 
-// Of a step: where the skin is folded to nothing, spheres of no size would touch for ever.
+// Share of a step: where the skin is folded to nothing, spheres without size would always touch.
 constexpr double kThinnest = 0.02;
 
 // The skin across an axis. Positions `s` are along it, in the mesh's own space.

@@ -11,7 +11,7 @@ namespace spherechain::baker {
 namespace {
 
 constexpr double kSkinShareGood = 0.95, kSkinShareMin = 0.6;  // of the rays
-// Of the limb's thickest sphere: a tail's tip, where spheres would go on getting smaller without end.
+// Share of the limb's thickest sphere: at a tail's tip, spheres would shrink without end.
 constexpr double kThinEnd = 0.2;
 constexpr std::size_t kLimbSpheresMax = 100;
 

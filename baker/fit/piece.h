@@ -40,7 +40,7 @@ class PieceFitter {
   Piece fit_from(const Ball& ball, Samples samples) const;
   // The best of some ways to cut a piece in two; none where there is nothing to cut.
   std::optional<std::pair<Piece, Piece>> halve(const Piece& piece) const;
-  // What a sample adds to the error of a piece with this sphere.
+  // The error that a sample adds to a piece with this sphere.
   double error_of(std::uint32_t sample, const Ball& ball) const;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace spherechain::baker {
 
-// The text of a BVH file, in which joints are turned. All else stays byte for byte, but for a wrong number of frames.
+// The text of a BVH file whose joints can be turned. Every other byte stays, except a wrong number of frames.
 class BvhText {
  public:
   // `file` is for messages. Throws Error(kFile) as parse_bvh does.
@@ -20,11 +20,11 @@ class BvhText {
   int frames() const { return static_cast<int>(bvh_.frames()); }
   double frame_time() const { return bvh_.frame_time; }
 
-  // By three angles any rotation can be written.
+  // True if the joint has three rotation channels, which can express any rotation.
   static bool turns_freely(const BvhJoint& joint);
   Eigen::Quaterniond rotation(int frame, const BvhJoint& joint) const;
-  // The joint must turn freely. Frames come in ascending order. Of the angles that are this rotation it takes those
-  // that follow the frame before as the file's own do.
+  // The joint must turn freely, and frames must come in ascending order. Among the angles that give this rotation,
+  // takes those that continue the previous frame as the file's own angles do.
   void turn(int frame, const BvhJoint& joint, const Eigen::Quaterniond& rotation);
 
   std::string text() const;

@@ -52,7 +52,7 @@ Comparison compare(const TurnedClip& clip, const Turns& turns, const std::vector
 
 double distance_between(const AnimatedAsset& animated, const Deformation& pose, std::uint32_t part_a,
                         std::uint32_t part_b) {
-  const BodyParts parts = parts_of(animated.asset());
+  const BodyParts parts = body_parts_of(animated.asset());
   Mesh mesh;
   mesh.positions = animated.positions(pose);
   mesh.triangles = animated.character().source_triangles;

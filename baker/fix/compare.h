@@ -6,18 +6,18 @@
 
 namespace spherechain::baker {
 
-// What feet and hands do that they did not do before.
+// Movements of feet and hands that the source clip does not have.
 struct Comparison {
-  double feet_mm = 0, feet_degrees = 0;  // that a foot moves and turns, at most
-  double jerk_ratio = 1;                 // of the wrists, where they move by more than 3 mm: after to before
+  double feet_mm = 0, feet_degrees = 0;  // largest displacement and turn of a foot
+  double jerk_ratio = 1;                 // of the wrists, after to before, where they moved by more than 3 mm
 };
 
 // `feet` and `wrists`: joints of the clip.
 Comparison compare(const TurnedClip& clip, const Turns& turns, const std::vector<Index>& feet,
                    const std::vector<Index>& wrists, double mm_per_unit);
 
-// The least distance of two body parts that do not meet, in the source's units: of a corner of one from the other's
-// triangles.
+// The distance of two body parts that do not intersect, in the source's units: the least from a corner of one to the
+// other's triangles.
 double distance_between(const AnimatedAsset& animated, const Deformation& pose, std::uint32_t part_a,
                         std::uint32_t part_b);
 

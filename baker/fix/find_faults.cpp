@@ -10,7 +10,7 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kSame = 2e-4;  // radians: too little to look again
+constexpr double kSame = 2e-4;  // radians: smaller turns need no new measurement
 
 // Calls work(thread, i) for all i, neighbours on one thread.
 template <typename Work>
@@ -43,10 +43,10 @@ FaultFinder::FaultFinder(const AnimatedAsset& animated, const TurnedClip& clip) 
   }
 }
 
-std::vector<Meeting> FaultFinder::look(SkinPlayer& player, double frame, const Turns& turns) const {
+std::vector<PosePenetration> FaultFinder::look(SkinPlayer& player, double frame, const Turns& turns) const {
   const BonePose bones(animated_.asset(), clip_.pose(frame, turns).deformation);
   player.set_pose(bones.pose());
-  std::vector<Meeting> out;
+  std::vector<PosePenetration> out;
   for (const Penetration& found : player.measure_quickly(&asked_)) out.push_back({frame, found});
   return out;
 }
@@ -82,29 +82,29 @@ std::vector<double> FaultFinder::changed(SeenFrames& seen,
 }
 
 template <typename Frames>
-std::vector<Meeting> FaultFinder::found_in(const SeenFrames& seen, const Frames& frames) {
-  std::vector<Meeting> out;
+std::vector<PosePenetration> FaultFinder::found_in(const SeenFrames& seen, const Frames& frames) {
+  std::vector<PosePenetration> out;
   for (const auto frame : frames) {
-    const std::vector<Meeting>& of_it = seen.at(frame).found;
+    const std::vector<PosePenetration>& of_it = seen.at(frame).found;
     out.insert(out.end(), of_it.begin(), of_it.end());
   }
   return out;
 }
 
-std::vector<Meeting> FaultFinder::in_frames(const std::vector<double>& frames, const Turns& turns) {
+std::vector<PosePenetration> FaultFinder::in_frames(const std::vector<double>& frames, const Turns& turns) {
   std::vector<std::pair<double, std::vector<Vec3>>> now;
   for (const double frame : frames) now.emplace_back(frame, clip_.turns_at(frame, turns));
   const std::vector<double> again = changed(seen_, now);
-  std::vector<std::vector<Meeting>> found(again.size());
+  std::vector<std::vector<PosePenetration>> found(again.size());
   on_threads(players_.size(), again.size(),
              [&](std::size_t t, std::size_t i) { found[i] = look(players_[t], again[i], turns); });
   for (std::size_t i = 0; i < again.size(); ++i) seen_[again[i]].found = std::move(found[i]);
   return found_in(seen_, frames);
 }
 
-std::vector<std::vector<Meeting>> FaultFinder::in_poses(const std::vector<TriedPose>& poses,
-                                                        const std::vector<char>& moves) {
-  std::vector<std::vector<Meeting>> found(poses.size());
+std::vector<std::vector<PosePenetration>> FaultFinder::in_poses(const std::vector<TriedPose>& poses,
+                                                                const std::vector<char>& moves) {
+  std::vector<std::vector<PosePenetration>> found(poses.size());
   const PartPairBits asked = part_pairs(animated_.asset(), [&](std::uint32_t a, std::uint32_t b) {
     return a != b && (moves[a] != 0 || moves[b] != 0) && !left_out_.contains({a, b});
   });
@@ -118,23 +118,23 @@ std::vector<std::vector<Meeting>> FaultFinder::in_poses(const std::vector<TriedP
   return found;
 }
 
-std::vector<Meeting> FaultFinder::look_after(std::size_t thread, int frame, const Turns& turns) {
-  std::vector<Meeting> out;
+std::vector<PosePenetration> FaultFinder::look_after(std::size_t thread, int frame, const Turns& turns) {
+  std::vector<PosePenetration> out;
   if (frame + 1 >= clip_.frames()) return out;
   const std::vector<StepContact> contacts =
       steps_[thread].find(clip_.pose(frame, turns).deformation, clip_.pose(frame + 1, turns).deformation);
   for (const StepContact& contact : contacts) {
     if (contact.at_start != 0 || contact.at_end != 0) continue;
     const double middle = 0.5 * (double{contact.begin} + double{contact.end});
-    for (const Meeting& meeting : look(players_[thread], frame + middle, turns)) {
-      const Penetration& found = meeting.found;
-      if (are_of(found, contact.part_a, contact.part_b) && is_fault(found.kind)) out.push_back(meeting);
+    for (const PosePenetration& penetration : look(players_[thread], frame + middle, turns)) {
+      const Penetration& found = penetration.found;
+      if (are_of(found, contact.part_a, contact.part_b) && is_fault(found.kind)) out.push_back(penetration);
     }
   }
   return out;
 }
 
-std::vector<Meeting> FaultFinder::between(const std::vector<int>& frames, const Turns& turns) {
+std::vector<PosePenetration> FaultFinder::between(const std::vector<int>& frames, const Turns& turns) {
   std::vector<std::pair<double, std::vector<Vec3>>> now;
   for (const int frame : frames) {
     std::vector<Vec3> both = clip_.turns_at(frame, turns);
@@ -143,7 +143,7 @@ std::vector<Meeting> FaultFinder::between(const std::vector<int>& frames, const 
     now.emplace_back(frame, std::move(both));
   }
   const std::vector<double> again = changed(seen_between_, now);
-  std::vector<std::vector<Meeting>> found(again.size());
+  std::vector<std::vector<PosePenetration>> found(again.size());
   on_threads(players_.size(), again.size(),
              [&](std::size_t t, std::size_t i) { found[i] = look_after(t, static_cast<int>(again[i]), turns); });
   for (std::size_t i = 0; i < again.size(); ++i) seen_between_[again[i]].found = std::move(found[i]);

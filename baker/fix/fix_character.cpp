@@ -47,13 +47,13 @@ Clip with_rotations(Clip clip, const std::vector<Channel>& channels) {
 class Fixer {
  public:
   // `bytes`: the character's file, where that is written.
-  Fixer(const FixJob& job, std::string bytes, const Bake& baked, const std::function<void(const std::string&)>& told)
-      : job_(job), roles_(baked.roles), told_(told) {
+  Fixer(const FixJob& job, std::string bytes, const Bake& baked, const std::function<void(const std::string&)>& report)
+      : job_(job), roles_(baked.roles), report_(report) {
     out_.bytes = std::move(bytes);
     out_.asset.assign(reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size());
     animated_.emplace(OpenAsset(out_.asset, job.input), job.input, job.input, MotionChoice{{}, job.clip, {}},
                       FrameChoice{0, 0});
-    out_.parts = parts_of(animated_->asset()).parts;
+    out_.parts = body_parts_of(animated_->asset()).parts;
     const auto is_part = [&](const std::string& name) {
       return std::any_of(out_.parts.begin(), out_.parts.end(), [&](const BodyPart& part) { return part.name == name; });
     };
@@ -112,7 +112,7 @@ class Fixer {
   }
 
   void fix_recording(const std::string& recording) {
-    told_("carrying over");
+    report_("carrying over");
     const auto carried =
         carried_motion(recording, rig(), animated_->character().source_positions, animated_->frame(), job_.input);
     Clip before = carried->clip();
@@ -138,7 +138,7 @@ class Fixer {
     return name;
   }
 
-  // Of the joints that the recording has, too: no other may turn.
+  // Roles of the joints that the recording contains. No other joint may turn.
   Roles recorded_roles(const CarriedMotion& carried) const {
     const std::vector<Index> nodes = carried.recorded_nodes();
     const std::set<Index> recorded(nodes.begin(), nodes.end());
@@ -168,7 +168,7 @@ class Fixer {
              });
     };
     MendedClip mended{clip.name, mend_clip(*animated_, roles, clip, job_.mend, leave,
-                                           [&](const std::string& doing) { told_(clip.name + ": " + doing); })};
+                                           [&](const std::string& doing) { report_(clip.name + ": " + doing); })};
     mended.others = static_cast<int>(
         std::erase_if(mended.mend.events, [&](const MendedEvent& event) { return !is_asked_for(event_of(event)); }));
     std::vector<Channel> turned;
@@ -202,18 +202,18 @@ class Fixer {
 
   const FixJob& job_;
   const Roles& roles_;
-  const std::function<void(const std::string&)>& told_;
+  const std::function<void(const std::string&)>& report_;
   std::optional<AnimatedAsset> animated_;
   FixedCharacter out_;
 };
 
 }  // namespace
 
-FixedCharacter fix_character(const FixJob& job, const std::function<void(const std::string&)>& told) {
+FixedCharacter fix_character(const FixJob& job, const std::function<void(const std::string&)>& report) {
   std::string bytes;
   if (!job.is_recording_written) bytes = read_as_glb(job.input);
-  const Bake baked = bake(job.input, job.config.bake, told);
-  return Fixer(job, std::move(bytes), baked, told).run();
+  const Bake baked = bake(job.input, job.config.bake, report);
+  return Fixer(job, std::move(bytes), baked, report).run();
 }
 
 double carried_over_again(const FixedCharacter& fixed, const std::string& input, const std::string& recording) {

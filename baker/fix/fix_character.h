@@ -12,36 +12,36 @@
 
 namespace spherechain::baker {
 
-// What to mend of a character, and what to leave.
+// Selects the clips and faults of a character that are fixed.
 struct FixJob {
   std::string input;
-  std::string clip;                                 // of its own: name or number; empty: all
-  std::optional<std::vector<std::size_t>> numbers;  // of all of its own only these
-  std::vector<std::string> recordings;              // carried over; without `numbers` in place of its own
-  bool is_recording_written = false;                // the one recording, a BVH file, in place of the character
+  std::string clip;                                 // one of the character's clips: name or number; empty: all
+  std::optional<std::vector<std::size_t>> numbers;  // only these of the character's clips
+  std::vector<std::string> recordings;  // retargeted; they replace the character's clips unless `numbers` is set
+  bool is_recording_written = false;    // write the one recording, a BVH file, not the character
   CheckConfig config;
   Baseline baseline;
-  std::vector<std::string> parts;  // only faults of these body parts; empty: of all
+  std::vector<std::string> parts;  // fix only faults of these body parts; empty: all
   MendOptions mend;
 };
 
 struct FixedCharacter {
-  std::string bytes;  // of the file with its clips mended: the character's, or the recording's
+  std::string bytes;  // the fixed file: the character's, or the recording's
   std::vector<MendedClip> clips;
-  std::vector<Clip> before, after;  // the same, whole
+  std::vector<Clip> before, after;  // the same clips in full
   std::vector<BodyPart> parts;
-  std::string asset;                      // bytes of the character's
-  std::vector<std::string> unused_parts;  // that a rule names, and the character has not
-  bool is_in_baseline = false;            // events of these clips are
+  std::string asset;                      // the baked character's bytes
+  std::vector<std::string> unused_parts;  // named by a rule, but missing in the character
+  bool is_in_baseline = false;            // the baseline has events of these clips
 };
 
-// Bakes the character and mends its clips one after another. `told` is called with what is being done. Throws Error:
-// kFile where a file has the wrong content or cannot be written so; kUsage where the character has no such body part;
-// what a bake throws.
-FixedCharacter fix_character(const FixJob& job, const std::function<void(const std::string&)>& told);
+// Bakes the character and fixes its clips one after another. `report` receives the current step as text. Throws Error:
+// kFile if a file has the wrong content or its format cannot hold the result; kUsage if the character lacks a body
+// part; and the errors of a bake.
+FixedCharacter fix_character(const FixJob& job, const std::function<void(const std::string&)>& report);
 
-// Carries the recording that was written over again. Returns how far the skin is at most from the mended clip, in the
-// recording's frames; mm.
+// Retargets the written recording again. Returns the largest distance of the skin from the fixed clip over the
+// recording's frames, in mm.
 double carried_over_again(const FixedCharacter& fixed, const std::string& input, const std::string& recording);
 
 }  // namespace spherechain::baker

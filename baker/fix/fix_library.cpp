@@ -17,13 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool can_be_mended(const JudgedEvent& judged) {
-  const Event& event = judged.event;
-  return judged.is_open() && judged.state != EventState::kAccepted && event.kind == SC_CLASS_PENETRATION &&
+bool can_be_mended(const EvaluatedEvent& evaluated) {
+  const Event& event = evaluated.event;
+  return evaluated.is_open() && evaluated.state != EventState::kAccepted && event.kind == SC_CLASS_PENETRATION &&
          event.parts[0] != event.parts[1];
 }
 
-// What to mend of each character; nothing where `numbers` and `recordings` are empty.
+// Jobs for all characters of a library. A job without `numbers` and `recordings` does nothing.
 std::vector<FixJob> jobs_of(const std::vector<LibraryCharacter>& library, const Verdict& verdict,
                             const Baseline& baseline) {
   std::vector<FixJob> out(library.size());
@@ -32,7 +32,7 @@ std::vector<FixJob> jobs_of(const std::vector<LibraryCharacter>& library, const 
     out[c].config = library[c].config;
     out[c].baseline = baseline;
   }
-  for (const JudgedClip& clip : verdict.clips) {
+  for (const EvaluatedClip& clip : verdict.clips) {
     if (std::none_of(clip.events.begin(), clip.events.end(), can_be_mended)) continue;
     FixJob& job = out[clip.clip.character];
     const std::size_t unit = clip.clip.order / kClipsPerUnitMax;
@@ -108,7 +108,7 @@ std::vector<std::string> fix_library(const std::vector<LibraryCharacter>& librar
                        tell(fmt::format("{}mended {}: {}", changes_any(fixed.clips) ? "" : "not ", file.string(),
                                         fix_line(fixed.clips)));
                      },
-                     [&line](const std::string& told) { line = told; },
+                     [&line](const std::string& message) { line = message; },
                      [&line, &job, &done](const Ending& ending) {
                        if (!ending.failure.empty()) {
                          const bool is_named = ending.failure.starts_with(job.input + ":");

@@ -17,13 +17,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// The largest turn of a joint, in each frame of an event that was pushed; degrees, ascending.
+// The largest turn of a joint in each frame of an improved event; degrees, ascending.
 std::vector<double> turns_of(const MendedClip& clip) {
   std::vector<double> out;
   const std::size_t frames = clip.mend.in_window.size(), joints = clip.mend.joints.size();
   std::vector<char> is_mended(frames, 0);
   for (const MendedEvent& event : clip.mend.events) {
-    if (event.outcome != Outcome::kCleared && event.outcome != Outcome::kReduced) continue;
+    if (event.outcome != MendOutcome::kCleared && event.outcome != MendOutcome::kReduced) continue;
     for (int f = event.from; f <= event.to; ++f) is_mended[static_cast<std::size_t>(f)] = 1;
   }
   for (std::size_t f = 0; f < frames; ++f) {
@@ -36,7 +36,7 @@ std::vector<double> turns_of(const MendedClip& clip) {
   return out;
 }
 
-// Of all frames.
+// The largest turn over all frames and joints, in degrees.
 double most_of(const MendedClip& clip) {
   double most = 0;
   for (const Vec3& turn : clip.mend.turns) most = std::max(most, turn.norm());
@@ -50,17 +50,17 @@ double quantile(const std::vector<double>& ascending, double q) {
 
 // Advice for each outcome that leaves a fault; empty where none is left.
 std::string advice_on(const std::vector<MendedEvent>& events) {
-  std::map<Outcome, double> left;  // the largest budget that is needed
+  std::map<MendOutcome, double> left;  // the largest budget that is needed
   for (const MendedEvent& e : events) left[e.outcome] = std::max(left[e.outcome], e.needed_degrees);
   std::string out;
-  if (left.contains(Outcome::kOverBudget)) {
-    const double budget = std::min(180.0, 5 * std::ceil(1.1 * left[Outcome::kOverBudget] / 5));
+  if (left.contains(MendOutcome::kOverBudget)) {
+    const double budget = std::min(180.0, 5 * std::ceil(1.1 * left[MendOutcome::kOverBudget] / 5));
     out += fmt::format("  over_budget: joints would turn farther than they may (try --budget {})\n", budget);
   }
-  if (left.contains(Outcome::kJointLimits)) {
+  if (left.contains(MendOutcome::kJointLimits)) {
     out += "  joint_limits: an elbow or a knee would bend the wrong way; no budget helps (change the pose)\n";
   }
-  if (left.contains(Outcome::kNoWayOut)) {
+  if (left.contains(MendOutcome::kNoWayOut)) {
     out +=
         "  no_way_out: none was found that is steady over all its frames and pushes nothing else in (mend a "
         "shorter piece of the clip, or change the pose)\n";
@@ -69,7 +69,7 @@ std::string advice_on(const std::vector<MendedEvent>& events) {
 }
 
 std::string clip_text(const MendedClip& clip, const std::vector<BodyPart>& parts) {
-  std::map<Outcome, int> counts;
+  std::map<MendOutcome, int> counts;
   std::string rows;
   for (const MendedEvent& e : clip.mend.events) {
     ++counts[e.outcome];
@@ -143,7 +143,7 @@ std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<Bod
 }
 
 std::string fix_line(const std::vector<MendedClip>& clips) {
-  std::map<Outcome, int> counts;
+  std::map<MendOutcome, int> counts;
   std::size_t events = 0;
   for (const MendedClip& clip : clips) {
     events += clip.mend.events.size();
@@ -166,7 +166,8 @@ bool changes_any(const std::vector<MendedClip>& clips) {
 bool leaves_faults(const std::vector<MendedClip>& clips) {
   return std::any_of(clips.begin(), clips.end(), [](const MendedClip& clip) {
     return std::any_of(clip.mend.events.begin(), clip.mend.events.end(), [](const MendedEvent& e) {
-      return e.outcome != Outcome::kCleared && e.outcome != Outcome::kFold && e.outcome != Outcome::kAccepted;
+      return e.outcome != MendOutcome::kCleared && e.outcome != MendOutcome::kFold &&
+             e.outcome != MendOutcome::kAccepted;
     });
   });
 }

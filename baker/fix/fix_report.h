@@ -11,22 +11,22 @@ namespace spherechain::baker {
 
 struct MendedClip {
   std::string name;
-  Mend mend;           // its events are those that were asked for
-  double seconds = 0;  // that it took
-  int others = 0;      // events that were not asked for
+  Mend mend;           // with the selected events only
+  double seconds = 0;  // time that the fix took
+  int others = 0;      // number of events that were not selected
 };
 
-// The file of `fix --report`, and the same for people.
+// The file of `fix --report`, and the same as text.
 std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts);
 std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts);
 
-// The same of a whole character in a line: "3 clips, 7 events: 6 cleared, 1 fold".
+// One line for a whole character: "3 clips, 7 events: 6 cleared, 1 fold".
 std::string fix_line(const std::vector<MendedClip>& clips);
 
-// Whether a joint turns in one of them.
+// True if a joint turns in one of the clips.
 bool changes_any(const std::vector<MendedClip>& clips);
 
-// Whether an event is left that could have been expected to be cleared.
+// True if an event is left that a user would expect to be cleared.
 bool leaves_faults(const std::vector<MendedClip>& clips);
 
 }  // namespace spherechain::baker

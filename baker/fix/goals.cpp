@@ -9,77 +9,78 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kDeeper = 0.5;       // mm: so much deeper than before is a fault, too
-constexpr double kFoldDeeper = 2;     // the same of folds, which move with the joint
-constexpr double kDeeperShare = 0.1;  // and of how deep it was
+constexpr double kDeeper = 0.5;       // mm: extra depth that is not yet a fault
+constexpr double kFoldDeeper = 2;     // the same for folds, which move with the joint
+constexpr double kDeeperShare = 0.1;  // plus this share of the depth before
 
 }  // namespace
 
-Goals::Goals(const std::vector<Meeting>& before, int frames, double mm_per_unit, double margin_mm,
+Goals::Goals(const std::vector<PosePenetration>& before, int frames, double mm_per_unit, double margin_mm,
              const std::function<bool(const MendedEvent&)>& leave)
     : mm_(mm_per_unit), margin_mm_(margin_mm) {
-  std::vector<PartMeeting> faults;
-  for (const Meeting& meeting : before) {
-    before_[place_of(meeting)] = meeting.found;
-    if (is_fault(meeting.found.kind)) faults.push_back({static_cast<int>(meeting.frame), meeting.found});
+  std::vector<FramePenetration> faults;
+  for (const PosePenetration& penetration : before) {
+    before_[place_of(penetration)] = penetration.found;
+    if (is_fault(penetration.found.kind)) faults.push_back({static_cast<int>(penetration.frame), penetration.found});
   }
   for (const EventSpan& span : join_events(faults, frames, false)) {
     const Penetration& worst = faults[span.deepest].found;
     MendedEvent event{worst.part, worst.other, span.from, span.to, worst.kind, mm_ * double{worst.measures.depth}, 0};
     event.worst = faults[span.deepest].frame;
-    if (worst.kind == SC_CLASS_DEEP_FOLD || worst.part == worst.other) event.outcome = Outcome::kFold;
-    if (leave(event)) event.outcome = Outcome::kAccepted;
+    if (worst.kind == SC_CLASS_DEEP_FOLD || worst.part == worst.other) event.outcome = MendOutcome::kFold;
+    if (leave(event)) event.outcome = MendOutcome::kAccepted;
     events.push_back(event);
   }
 }
 
-const Penetration* Goals::before(const MeetingPlace& place) const {
+const Penetration* Goals::before(const PenetrationKey& place) const {
   const auto known = before_.find(place);
   return known == before_.end() ? nullptr : &known->second;
 }
 
-const MendedEvent* Goals::event_at(const MeetingPlace& place) const {
+const MendedEvent* Goals::event_at(const PenetrationKey& place) const {
   const auto event = std::find_if(events.begin(), events.end(), [&](const MendedEvent& e) { return is_in(place, e); });
   return event == events.end() ? nullptr : &*event;
 }
 
-double Goals::allowed(const Meeting& meeting) const {
+double Goals::allowed(const PosePenetration& penetration) const {
   const double apart = -margin_mm_ / mm_;
-  const MendedEvent* event = event_at(place_of(meeting));
+  const MendedEvent* event = event_at(place_of(penetration));
   if (event == nullptr) {
-    const bool is_new = meeting.found.kind == SC_CLASS_PENETRATION && meeting.found.part != meeting.found.other;
+    const bool is_new =
+        penetration.found.kind == SC_CLASS_PENETRATION && penetration.found.part != penetration.found.other;
     if (is_new) return apart;
-  } else if (is_wanted(*event) && meeting.frame >= event->from && meeting.frame <= event->to) {
+  } else if (is_wanted(*event) && penetration.frame >= event->from && penetration.frame <= event->to) {
     return apart;
   }
-  const Penetration* known = before({std::round(meeting.frame), meeting.found.part, meeting.found.other});
+  const Penetration* known = before({std::round(penetration.frame), penetration.found.part, penetration.found.other});
   return known == nullptr ? 0 : double{known->measures.depth};
 }
 
-bool Goals::is_let_be(const Meeting& meeting) const {
-  const double may_be = allowed(meeting);
+bool Goals::is_let_be(const PosePenetration& penetration) const {
+  const double may_be = allowed(penetration);
   if (may_be < 0) return false;
-  const Penetration& p = meeting.found;
-  // What is no fault and not to part is let be: folds and touches come and go with a joint.
+  const Penetration& p = penetration.found;
+  // Pairs that are no faults and were not separated are left alone: folds and touches come and go with a joint.
   if (!is_fault(p.kind) || p.part == p.other) return true;
   const double slack = (p.kind == SC_CLASS_DEEP_FOLD ? kFoldDeeper : kDeeper) / mm_ + kDeeperShare * may_be;
   return double{p.measures.depth} - may_be <= slack;
 }
 
-double Goals::too_deep(const Meeting& meeting) const {
-  if (!is_fault(meeting.found.kind) || is_let_be(meeting)) return 0;
-  return double{meeting.found.measures.depth} - std::max(allowed(meeting), 0.0);
+double Goals::too_deep(const PosePenetration& penetration) const {
+  if (!is_fault(penetration.found.kind) || is_let_be(penetration)) return 0;
+  return double{penetration.found.measures.depth} - std::max(allowed(penetration), 0.0);
 }
 
-bool Goals::is_worse(const Meeting& meeting) const {
-  if (!is_fault(meeting.found.kind)) return false;
-  const double first = std::floor(meeting.frame) - 1, last = std::ceil(meeting.frame) + 1;
+bool Goals::is_worse(const PosePenetration& penetration) const {
+  if (!is_fault(penetration.found.kind)) return false;
+  const double first = std::floor(penetration.frame) - 1, last = std::ceil(penetration.frame) + 1;
   double most = 0;
   for (double f = first; f <= last; ++f) {
-    const Penetration* known = before({f, meeting.found.part, meeting.found.other});
+    const Penetration* known = before({f, penetration.found.part, penetration.found.other});
     if (known != nullptr && is_fault(known->kind)) most = std::max(most, double{known->measures.depth});
   }
-  return double{meeting.found.measures.depth} > most + kFoldDeeper / mm_;
+  return double{penetration.found.measures.depth} > most + kFoldDeeper / mm_;
 }
 
 std::set<std::pair<std::uint32_t, std::uint32_t>> Goals::harmless() const {

@@ -9,46 +9,46 @@
 
 #include "fix/find_faults.h"
 #include "fix/mend.h"
-#include "fix/pushes.h"
+#include "fix/separations.h"
 
 namespace spherechain::baker {
 
-inline MeetingPlace place_of(const Meeting& meeting) {
-  return {meeting.frame, meeting.found.part, meeting.found.other};
+inline PenetrationKey place_of(const PosePenetration& penetration) {
+  return {penetration.frame, penetration.found.part, penetration.found.other};
 }
 
-// What a mend is to reach: the events of a clip, and how deep each two parts may be in each other in a frame.
+// Targets of a fix: a clip's events, and the depth that each two parts may have in each frame.
 class Goals {
  public:
-  // `before`: what the clip's frames have. `leave` says which events are to be left as they are.
-  Goals(const std::vector<Meeting>& before, int frames, double mm_per_unit, double margin_mm,
+  // `before`: penetrations in the clip's frames. `leave` returns true for events that must stay as they are.
+  Goals(const std::vector<PosePenetration>& before, int frames, double mm_per_unit, double margin_mm,
         const std::function<bool(const MendedEvent&)>& leave);
 
   std::vector<MendedEvent> events;
 
-  static bool is_wanted(const MendedEvent& event) { return event.outcome == Outcome::kReduced; }
-  static bool is_in(const MeetingPlace& place, const MendedEvent& event) {
+  static bool is_wanted(const MendedEvent& event) { return event.outcome == MendOutcome::kReduced; }
+  static bool is_in(const PenetrationKey& place, const MendedEvent& event) {
     return place.part == event.part && place.other == event.other && place.frame >= event.from - 1 &&
            place.frame <= event.to + 1;
   }
 
-  // What the clip's frames had.
-  const std::map<MeetingPlace, Penetration>& before() const { return before_; }
-  const Penetration* before(const MeetingPlace& place) const;  // null where the two did not meet
-  const MendedEvent* event_at(const MeetingPlace& place) const;
-  // How deep they may be, in the source's units; negative: so far apart.
-  double allowed(const Meeting& meeting) const;
-  // By how much a fault is deeper than that; 0 where it is let be.
-  double too_deep(const Meeting& meeting) const;
-  bool is_let_be(const Meeting& meeting) const;
-  // Than the same parts were around that time.
-  bool is_worse(const Meeting& meeting) const;
-  // Pairs of parts that are never more than layers of each other, or as at rest.
+  // Penetrations in the frames of the source clip.
+  const std::map<PenetrationKey, Penetration>& before() const { return before_; }
+  const Penetration* before(const PenetrationKey& place) const;  // null: no penetration
+  const MendedEvent* event_at(const PenetrationKey& place) const;
+  // The allowed depth in the source's units. Negative: the parts must be that far apart.
+  double allowed(const PosePenetration& penetration) const;
+  // Residual: the depth beyond the allowed one. 0 for penetrations that are left alone.
+  double too_deep(const PosePenetration& penetration) const;
+  bool is_let_be(const PosePenetration& penetration) const;
+  // True if the penetration is deeper than the same two parts were around that time.
+  bool is_worse(const PosePenetration& penetration) const;
+  // Pairs of parts that never do worse than lie in layers or intersect as at rest.
   std::set<std::pair<std::uint32_t, std::uint32_t>> harmless() const;
 
  private:
   double mm_, margin_mm_;
-  std::map<MeetingPlace, Penetration> before_;
+  std::map<PenetrationKey, Penetration> before_;
 };
 
 }  // namespace spherechain::baker

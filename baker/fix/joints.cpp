@@ -19,21 +19,21 @@ std::string role_of(const Roles& roles, Index node) {
   return node < roles.of_node.size() ? without_side(roles.of_node[node].role) : "";
 }
 
-// What a radian costs. Joints near the trunk carry more with them.
-double price_of(const std::string& role) {
-  static const std::map<std::string, double> kPrices{{"shoulder", 1}, {"elbow", 1}, {"wrist", 2},  {"clavicle", 4},
-                                                     {"neck", 6},     {"head", 6},  {"spine", 60}, {"chest", 60},
-                                                     {"hip", 12},     {"knee", 12}, {"ankle", 25}, {"limb", 1}};
+// Cost of a radian. Joints near the trunk carry more, so they cost more.
+double role_cost(const std::string& role) {
+  static const std::map<std::string, double> kCosts{{"shoulder", 1}, {"elbow", 1}, {"wrist", 2},  {"clavicle", 4},
+                                                    {"neck", 6},     {"head", 6},  {"spine", 60}, {"chest", 60},
+                                                    {"hip", 12},     {"knee", 12}, {"ankle", 25}, {"limb", 1}};
   if (role.starts_with("tail")) return 1;
-  const auto found = kPrices.find(role);
-  return found == kPrices.end() ? 0 : found->second;
+  const auto found = kCosts.find(role);
+  return found == kCosts.end() ? 0 : found->second;
 }
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
-constexpr double kBentMost = 150 * kDegree;
+constexpr double kBendMax = 150 * kDegree;
 
-// A joint of two bones bends across both, as the clip bends it, and from straight to as far as it does there, or 150
-// degrees. None where there is no such axis.
+// The hinge between two bones: its axis from the clip's bends, its range from straight to the larger of 150 degrees and
+// the clip's largest bend. Empty if there is no such axis.
 std::optional<Hinge> hinge_of(const SourceRig& rig, const Clip& clip, Index node) {
   constexpr int kLooks = 100;
   const auto child = std::find_if(rig.nodes.begin(), rig.nodes.end(),
@@ -52,22 +52,22 @@ std::optional<Hinge> hinge_of(const SourceRig& rig, const Clip& clip, Index node
   }
   if (sum.norm() < 1e-3) return {};
   out.axis = sum.normalized();
-  out.most = kBentMost;
+  out.max_bend = kBendMax;
   for (const Eigen::Quaterniond& rotation : rotations) {
-    out.least = std::min(out.least, out.bend(rotation));
-    out.most = std::max(out.most, out.bend(rotation));
+    out.min_bend = std::min(out.min_bend, out.bend(rotation));
+    out.max_bend = std::max(out.max_bend, out.bend(rotation));
   }
   return out;
 }
 
-// Dear is what does not bend, and a little what twists.
-Eigen::Matrix3d price_of(const Hinge& hinge) {
+// Turning off the hinge's axis is expensive; twisting is slightly so.
+Eigen::Matrix3d hinge_cost(const Hinge& hinge) {
   constexpr double kOff = 30, kTwist = 4;
   return kOff * Eigen::Matrix3d::Identity() - (kOff - 1) * hinge.axis * hinge.axis.transpose() -
          (kOff - kTwist) * hinge.lower * hinge.lower.transpose();
 }
 
-// How many of the rig's bones are at each node or below.
+// The number of bones at each node or below.
 std::vector<std::size_t> bones_below(const SourceRig& rig) {
   std::vector<std::size_t> out(rig.nodes.size(), 0);
   for (const Bone& bone : rig.bones) ++out[bone.node];
@@ -83,11 +83,11 @@ std::vector<TurningJoint> turning_joints(const SourceRig& rig, const Roles& role
   std::vector<TurningJoint> out;
   for (Index n = 0; n < rig.nodes.size(); ++n) {
     const std::string role = role_of(roles, n);
-    const double price = price_of(role);
-    if (price == 0) continue;
+    const double cost = role_cost(role);
+    if (cost == 0) continue;
     const bool is_hinge = role == "elbow" || role == "knee";
     const std::optional<Hinge> hinge = is_hinge ? hinge_of(rig, clip, n) : std::nullopt;
-    out.push_back({n, price * (hinge ? price_of(*hinge) : Eigen::Matrix3d::Identity()), hinge});
+    out.push_back({n, cost * (hinge ? hinge_cost(*hinge) : Eigen::Matrix3d::Identity()), hinge});
   }
   if (!out.empty()) return out;
   const std::vector<std::size_t> carried = bones_below(rig);

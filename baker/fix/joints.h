@@ -9,11 +9,11 @@
 
 namespace spherechain::baker {
 
-// The joints that may turn in a clip, of all that a body's roles name; of a body without such roles all but the one
-// that carries all others. Elbows and knees give way along their hinge, as the clip bends it.
+// The joints that may turn in a clip: those with known roles, or, on a body without such roles, all except the joint
+// that carries all others. Elbows and knees turn about their hinge, which is derived from the clip.
 std::vector<TurningJoint> turning_joints(const SourceRig& rig, const Roles& roles, const Clip& clip);
 
-// Those of them with that role, on either side: "ankle".
+// Joints with this role, on either side. Example: "ankle".
 std::vector<Index> joints_of_role(const std::vector<TurningJoint>& joints, const Roles& roles, const std::string& role);
 
 }  // namespace spherechain::baker

@@ -16,36 +16,36 @@
 namespace spherechain::baker {
 
 struct MendOptions {
-  double budget_degrees = 25;  // the farthest that an event may turn a joint
-  double margin_mm = 1.5;      // what is pushed out ends so far apart
+  double budget_degrees = 25;  // largest turn of a joint for one event
+  double margin_mm = 1.5;      // distance of separated parts
 };
 
-// The last three say why a fault is about as deep as it was: a joint would turn beyond the budget, or beyond how far an
-// elbow or a knee bends; or no way out was found that neither shakes nor pushes others in.
-enum class Outcome { kCleared, kReduced, kFold, kAccepted, kOverBudget, kJointLimits, kNoWayOut };
-const char* outcome_name(Outcome outcome);
+// The last three say why a fault stayed about as deep: a joint would exceed the budget, or the range of an elbow or
+// knee; or every way out shakes or causes other penetrations. kReduced also marks events that are still to be fixed.
+enum class MendOutcome { kCleared, kReduced, kFold, kAccepted, kOverBudget, kJointLimits, kNoWayOut };
+const char* outcome_name(MendOutcome outcome);
 
-// Two body parts in each other over some frames, before and after.
+// A penetration of two body parts over some frames, before and after the fix.
 struct MendedEvent {
   std::uint32_t part, other;
   int from, to;  // frames of the clip
   PenetrationClass kind;
   double depth_before, depth_after;  // mm
-  double turn_degrees = 0;           // the largest in its frames
-  Outcome outcome = Outcome::kReduced;
-  int worst = 0;              // the frame in which it is deepest, before
-  double needed_degrees = 0;  // of kOverBudget: the budget that frees its worst frame
+  double turn_degrees = 0;           // largest turn of a joint in its frames
+  MendOutcome outcome = MendOutcome::kReduced;
+  int worst = 0;              // the frame in which it was deepest before
+  double needed_degrees = 0;  // for kOverBudget: the budget that would free its worst frame
 };
 
 struct Mend {
   std::vector<TurningJoint> joints;
-  Turns turns;                  // all zero where nothing is changed
-  std::vector<char> in_window;  // of each frame: may it have changed?
+  Turns turns;                  // all zero if nothing changes
+  std::vector<char> in_window;  // per frame: 1 if it may have changed
   std::vector<MendedEvent> events;
   Comparison compared;
-  // Pairs of parts in a frame, pushed, at most 10 mm deep before; of these, those within 5 mm of each other after.
+  // Separated pairs in a frame that were at most 10 mm deep; and how many of them are still within 5 mm after the fix.
   int shallow = 0, still_near = 0;
-  // Of faults that were to be mended, as far as their contours close; cm3, summed over frames.
+  // Penetrated volume of the selected faults, as far as their contours close: cm3, summed over frames.
   double volume_before = 0, volume_after = 0;
   int rounds = 0;
 
@@ -54,11 +54,11 @@ struct Mend {
   }
 };
 
-// Turns joints so that what is a fault in a clip's frames, and between them, is none any more; feet stay where they
-// are. No joint turns beyond the budget: what then stays is reduced, or as it was. `leave` says which are to be left as
-// they are. `told` is called with what is being done.
+// Turns joints until a clip has no faults in its frames and between them. Feet stay in place. No joint turns beyond the
+// budget, so some faults are only reduced, or stay. `leave` returns true for events that must stay as they are.
+// `report` receives the current step as text.
 Mend mend_clip(const AnimatedAsset& animated, const Roles& roles, const ClipFrames& clip, const MendOptions& options,
                const std::function<bool(const MendedEvent&)>& leave,
-               const std::function<void(const std::string&)>& told);
+               const std::function<void(const std::string&)>& report);
 
 }  // namespace spherechain::baker

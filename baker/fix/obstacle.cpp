@@ -9,16 +9,16 @@
 namespace spherechain::baker {
 namespace {
 
-// Degrees: a joint that turns farther poses the limb anew, and its bend has lost its meaning.
-constexpr double kBudgetMost = 90;
+// Degrees. Beyond this, a joint poses the limb anew, and the range of its bend has no meaning.
+constexpr double kBudgetMax = 90;
 
-// The farthest that a joint turns, in degrees, where the limb's one frame becomes free within the budget.
+// The largest turn of a joint, in degrees, that frees the limb's one frame. Empty if the budget is too small.
 std::optional<double> needed_turn(const TurnedClip& clip, const LimbInTrouble& limb, double budget_degrees,
-                                  const JudgePoses& judge) {
+                                  const EvaluatePoses& evaluate) {
   const double degree = std::numbers::pi / 180;
   const Turns still(static_cast<std::size_t>(clip.frames()) * clip.count(), Vec3::Zero());
-  const std::vector<Vec3> turns = find_way_out(clip, limb, budget_degrees * degree, still, judge).at(limb.from);
-  if (judge({{limb.from, turns}})[0] > 0) return {};
+  const std::vector<Vec3> turns = find_way_out(clip, limb, budget_degrees * degree, still, evaluate).at(limb.from);
+  if (evaluate({{limb.from, turns}})[0] > 0) return {};
   double most = 0;
   for (const Vec3& turn : turns) most = std::max(most, turn.norm());
   return most / degree;
@@ -27,21 +27,21 @@ std::optional<double> needed_turn(const TurnedClip& clip, const LimbInTrouble& l
 }  // namespace
 
 Obstacle find_obstacle(const TurnedClip& clip, LimbInTrouble limb, int frame, double budget_degrees,
-                       const JudgePoses& judge) {
+                       const EvaluatePoses& evaluate) {
   limb.from = limb.to = frame;
   limb.worst = {frame};
-  // It could go out alone: what it shares its time with is in its way.
-  if (needed_turn(clip, limb, budget_degrees, judge)) return {Outcome::kNoWayOut};
-  for (const double budget : {2 * budget_degrees, kBudgetMost}) {
+  // The frame alone can be freed, so an event at the same time prevents it.
+  if (needed_turn(clip, limb, budget_degrees, evaluate)) return {MendOutcome::kNoWayOut};
+  for (const double budget : {2 * budget_degrees, kBudgetMax}) {
     if (budget <= budget_degrees) continue;
-    const std::optional<double> needed = needed_turn(clip, limb, budget, judge);
-    if (needed) return {Outcome::kOverBudget, *needed};
+    const std::optional<double> needed = needed_turn(clip, limb, budget, evaluate);
+    if (needed) return {MendOutcome::kOverBudget, *needed};
   }
   std::vector<TurningJoint> free = clip.joints();
   for (TurningJoint& joint : free) joint.hinge.reset();
   const TurnedClip without_limits(clip.rig(), clip.clip(), clip.fps(), clip.frames(), std::move(free));
-  return {needed_turn(without_limits, limb, std::max(kBudgetMost, budget_degrees), judge) ? Outcome::kJointLimits
-                                                                                          : Outcome::kNoWayOut};
+  return {needed_turn(without_limits, limb, std::max(kBudgetMax, budget_degrees), evaluate) ? MendOutcome::kJointLimits
+                                                                                            : MendOutcome::kNoWayOut};
 }
 
 }  // namespace spherechain::baker

@@ -6,14 +6,14 @@
 
 namespace spherechain::baker {
 
-// Why a limb was not freed: kOverBudget, kJointLimits or kNoWayOut.
+// The reason why a limb stays in a penetration: kOverBudget, kJointLimits or kNoWayOut.
 struct Obstacle {
-  Outcome outcome;
-  double needed_degrees = 0;  // of kOverBudget: the budget that frees the frame
+  MendOutcome outcome;
+  double needed_degrees = 0;  // for kOverBudget: the budget that would free the frame
 };
 
-// Tries the limb out in this one frame, first within the budget, then with more and more freedom.
+// Searches ways out for the limb in this frame alone: within the budget, with larger budgets, then without hinges.
 Obstacle find_obstacle(const TurnedClip& clip, LimbInTrouble limb, int frame, double budget_degrees,
-                       const JudgePoses& judge);
+                       const EvaluatePoses& evaluate);
 
 }  // namespace spherechain::baker

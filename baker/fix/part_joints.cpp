@@ -14,11 +14,11 @@ constexpr double kCheap = 2.1;  // times the cheapest
 }  // namespace
 
 PartJoints::PartJoints(const AnimatedAsset& animated, const TurnedClip& clip, const std::vector<Index>& feet) {
-  for (const BodyPart& part : parts_of(animated.asset()).parts) {
+  for (const BodyPart& part : body_parts_of(animated.asset()).parts) {
     above_.push_back(part.bone < 0 ? std::vector<Index>{} : clip.above(static_cast<Index>(part.bone)));
   }
   for (const TurningJoint& joint : clip.joints()) {
-    prices_.push_back(principal_axes(joint.price).values.minCoeff());
+    costs_.push_back(principal_axes(joint.cost).values.minCoeff());
   }
   for (const Index foot : feet) {
     const std::vector<Index> all = clip.above_joint(foot);
@@ -32,8 +32,8 @@ std::set<Index> PartJoints::between(std::uint32_t a, std::uint32_t b) const {
   std::set_symmetric_difference(one.begin(), one.end(), other.begin(), other.end(), std::inserter(out, out.end()));
   std::erase_if(out, [&](Index joint) { return held_.contains(joint); });
   double least = HUGE_VAL;
-  for (const Index joint : out) least = std::min(least, prices_[joint]);
-  std::erase_if(out, [&](Index joint) { return prices_[joint] > kCheap * least; });
+  for (const Index joint : out) least = std::min(least, costs_[joint]);
+  std::erase_if(out, [&](Index joint) { return costs_[joint] > kCheap * least; });
   return out;
 }
 

@@ -11,31 +11,31 @@
 
 namespace spherechain::baker {
 
-// Which turning joints move which body parts.
+// Maps body parts to the turning joints that move them.
 class PartJoints {
  public:
-  // `feet`: joints that are held, with all that they hang on.
+  // `feet`: joints that must not turn, nor any joint above them.
   PartJoints(const AnimatedAsset& animated, const TurnedClip& clip, const std::vector<Index>& feet);
 
   const std::vector<Index>& above(std::uint32_t part) const { return above_[part]; }
-  // Those that move one of two parts and not the other, of the cheap ones, and none that a foot hangs on.
+  // Cheap joints that move only one of the two parts. Joints above a foot are left out.
   std::set<Index> between(std::uint32_t a, std::uint32_t b) const;
-  // Of each part: does one of these joints move it?
+  // Marks each part that one of these joints moves.
   std::vector<char> moved_by(const std::set<Index>& joints) const;
 
  private:
-  std::vector<std::vector<Index>> above_;  // of each part
-  std::vector<double> prices_;             // of each joint, along its cheapest axis
+  std::vector<std::vector<Index>> above_;  // by part
+  std::vector<double> costs_;              // by joint, along its cheapest axis
   std::set<Index> held_;
 };
 
-// An event, with all others that it shares joints and time with.
+// An event, together with all events that share joints and frames with it.
 struct LimbInTrouble {
-  std::vector<std::size_t> events;  // the first of them is the one that was asked for
-  std::vector<Index> joints;        // none: nothing can be turned
-  std::vector<char> moves;          // of each part: these joints do
-  int from, to;                     // frames of all of them
-  std::vector<int> worst;           // an event's deepest frame each
+  std::vector<std::size_t> events;  // the requested event comes first
+  std::vector<Index> joints;        // empty: no joint can turn
+  std::vector<char> moves;          // by part: 1 if these joints move it
+  int from, to;                     // frames of all these events
+  std::vector<int> worst;           // the deepest frame of each event
 };
 LimbInTrouble limb_in_trouble(const Goals& goals, const PartJoints& parts, std::size_t event,
                               const std::function<bool(std::size_t)>& is_open);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Normal equations: sparse, with a band as wide as two frames, for only neighbours in time and what a wish names are
-// tied to each other.
+// Sparse normal equations. Their band is two frames wide, because terms couple only neighbours in time and the joints
+// of one constraint.
 #include "fix/solve.h"
 
 #include <Eigen/SparseCholesky>
@@ -10,8 +10,8 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kSteadyTime = 0.1;  // seconds: what changes within is dear
-constexpr int kTrials = 4;           // in which wishes are found to be met
+constexpr double kSteadyTime = 0.1;  // seconds: faster changes are expensive
+constexpr int kTrials = 4;           // to find out which constraints are above their target
 
 using Matrix = Eigen::SparseMatrix<double>;
 
@@ -23,27 +23,27 @@ class System {
     }
   }
   Eigen::Index size() const { return static_cast<Eigen::Index>(slots_ * clip_.count() * 3); }
-  // Of a frame's joint: the place of its first number; negative: it keeps zero.
+  // The first unknown of a frame's joint. Negative: the joint keeps zero.
   Eigen::Index place(int frame, Index joint) const {
     if (frame < 0 || frame >= static_cast<int>(slot_.size()) || slot_[static_cast<std::size_t>(frame)] < 0) return -1;
     return static_cast<Eigen::Index>(
         (static_cast<std::size_t>(slot_[static_cast<std::size_t>(frame)]) * clip_.count() + joint) * 3);
   }
 
-  Matrix prices() const {
+  Matrix costs() const {
     std::vector<Eigen::Triplet<double>> entries;
     const double steady = std::pow(kSteadyTime * clip_.fps(), 4);
     const auto frames = static_cast<int>(slot_.size());
     for (Index j = 0; j < clip_.count(); ++j) {
-      const Eigen::Matrix3d& price = clip_.joints()[j].price;
+      const Eigen::Matrix3d& cost = clip_.joints()[j].cost;
       for (int f = 0; f < frames; ++f) {
-        add(entries, place(f, j), place(f, j), price);
-        // The bend of three frames; there is none beyond the clip's ends.
+        add(entries, place(f, j), place(f, j), cost);
+        // The second difference of three frames. The clip's ends have none.
         if (f == 0 || f + 1 == frames) continue;
         constexpr double kBend[3] = {1, -2, 1};
         for (int a = -1; a <= 1; ++a) {
           for (int b = -1; b <= 1; ++b) {
-            add(entries, place(f + a, j), place(f + b, j), steady * kBend[a + 1] * kBend[b + 1] * price);
+            add(entries, place(f + a, j), place(f + b, j), steady * kBend[a + 1] * kBend[b + 1] * cost);
           }
         }
       }
@@ -67,18 +67,18 @@ class System {
   std::size_t slots_ = 0;
 };
 
-double sum_of(const Wish& wish, const System& system, const Eigen::VectorXd& x) {
+double sum_of(const Constraint& constraint, const System& system, const Eigen::VectorXd& x) {
   double sum = 0;
-  for (const Wish::Part& part : wish.parts) {
-    if (const Eigen::Index at = system.place(part.frame, part.joint); at >= 0) sum += part.by.dot(x.segment<3>(at));
+  for (const Constraint::Term& term : constraint.terms) {
+    if (const Eigen::Index at = system.place(term.frame, term.joint); at >= 0) sum += term.by.dot(x.segment<3>(at));
   }
   return sum;
 }
 
 }  // namespace
 
-Turns solve_turns(const TurnedClip& clip, const std::vector<char>& in_window, const std::vector<Wish>& wishes,
-                  const Turns& start, double leave) {
+Turns solve_turns(const TurnedClip& clip, const std::vector<char>& in_window,
+                  const std::vector<Constraint>& constraints, const Turns& start, double leave) {
   const System system(clip, in_window);
   const std::size_t count = clip.count();
   Turns out(in_window.size() * count, Vec3::Zero());
@@ -90,31 +90,32 @@ Turns solve_turns(const TurnedClip& clip, const std::vector<char>& in_window, co
         x.segment<3>(at) = start[f * count + j];
     }
   }
-  Matrix prices = system.prices();
-  Eigen::VectorXd dear = Eigen::VectorXd::Zero(system.size());  // what no push names is free to go back
-  for (const Wish& wish : wishes) {
-    if (wish.weight == wish.weight_over) continue;  // it holds everywhere
-    for (const Wish::Part& part : wish.parts) {
-      if (const Eigen::Index at = system.place(part.frame, part.joint); at >= 0) dear.segment<3>(at).setConstant(leave);
+  Matrix costs = system.costs();
+  Eigen::VectorXd dear = Eigen::VectorXd::Zero(system.size());  // turns that no separation names may return to zero
+  for (const Constraint& constraint : constraints) {
+    if (constraint.weight == constraint.weight_above) continue;  // an equality does not depend on `start`
+    for (const Constraint::Term& term : constraint.terms) {
+      if (const Eigen::Index at = system.place(term.frame, term.joint); at >= 0) dear.segment<3>(at).setConstant(leave);
     }
   }
-  for (Eigen::Index i = 0; i < system.size(); ++i) prices.coeffRef(i, i) += dear[i];
+  for (Eigen::Index i = 0; i < system.size(); ++i) costs.coeffRef(i, i) += dear[i];
   const Eigen::VectorXd begin = dear.cwiseProduct(x);
   Eigen::SimplicialLLT<Matrix> cholesky;
-  std::vector<char> is_over(wishes.size());
-  for (std::size_t i = 0; i < wishes.size(); ++i) is_over[i] = sum_of(wishes[i], system, x) > wishes[i].value ? 1 : 0;
+  std::vector<char> is_above(constraints.size());
+  for (std::size_t i = 0; i < constraints.size(); ++i)
+    is_above[i] = sum_of(constraints[i], system, x) > constraints[i].target ? 1 : 0;
   for (int round = 0; round < kTrials; ++round) {
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::VectorXd right = begin;
-    for (std::size_t i = 0; i < wishes.size(); ++i) {
-      const Wish& wish = wishes[i];
-      const double weight = is_over[i] != 0 ? wish.weight_over : wish.weight;
+    for (std::size_t i = 0; i < constraints.size(); ++i) {
+      const Constraint& constraint = constraints[i];
+      const double weight = is_above[i] != 0 ? constraint.weight_above : constraint.weight;
       if (weight == 0) continue;
-      for (const Wish::Part& a : wish.parts) {
+      for (const Constraint::Term& a : constraint.terms) {
         const Eigen::Index row = system.place(a.frame, a.joint);
         if (row < 0) continue;
-        right.segment<3>(row) += weight * wish.value * a.by;
-        for (const Wish::Part& b : wish.parts) {
+        right.segment<3>(row) += weight * constraint.target * a.by;
+        for (const Constraint::Term& b : constraint.terms) {
           const Eigen::Index column = system.place(b.frame, b.joint);
           if (column < 0) continue;
           const Eigen::Matrix3d block = weight * a.by * b.by.transpose();
@@ -126,14 +127,14 @@ Turns solve_turns(const TurnedClip& clip, const std::vector<char>& in_window, co
     }
     Matrix matrix(system.size(), system.size());
     matrix.setFromTriplets(entries.begin(), entries.end());
-    matrix += prices;
+    matrix += costs;
     cholesky.compute(matrix);
     x = cholesky.solve(right);
     bool changed = false;
-    for (std::size_t i = 0; i < wishes.size(); ++i) {
-      const char over = sum_of(wishes[i], system, x) > wishes[i].value ? 1 : 0;
-      changed |= over != is_over[i];
-      is_over[i] = over;
+    for (std::size_t i = 0; i < constraints.size(); ++i) {
+      const char over = sum_of(constraints[i], system, x) > constraints[i].target ? 1 : 0;
+      changed |= over != is_above[i];
+      is_above[i] = over;
     }
     if (!changed) break;
   }

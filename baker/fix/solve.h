@@ -7,23 +7,23 @@
 
 namespace spherechain::baker {
 
-// A wish of one number: sum of parts . turns comes to `value`. Turns are those of whole frames.
-struct Wish {
-  struct Part {
+// A linear equation in the turns of whole frames: sum of coefficients . turns = target, in the least-squares sense.
+struct Constraint {
+  struct Term {
     int frame;
     Index joint;
     Vec3 by;
   };
-  std::vector<Part> parts;
-  double value = 0;
-  double weight = 1;       // of its squared miss
-  double weight_over = 0;  // the same, where the sum is more than `value`
+  std::vector<Term> terms;
+  double target = 0;
+  double weight = 1;        // of its squared residual
+  double weight_above = 0;  // the same, if the sum exceeds the target
 };
 
-// The turns of a clip's frames that cost least: their price, how unsteady they are, and what is missed of the wishes.
-// Frames outside of `in_window` keep zero. One linear system over all of the clip. To leave `start` costs `leave` times
-// a radian's square where a wish names the turn: wishes hold near it alone.
-Turns solve_turns(const TurnedClip& clip, const std::vector<char>& in_window, const std::vector<Wish>& wishes,
-                  const Turns& start, double leave);
+// Solves for the turns with the least sum of their costs, their unsteadiness over time, and the constraints' weighted
+// squared residuals: one sparse linear system over the clip. Frames outside of `in_window` keep zero. Turns that a
+// constraint names also pay `leave` per squared radian away from `start`, because constraints are linearised there.
+Turns solve_turns(const TurnedClip& clip, const std::vector<char>& in_window,
+                  const std::vector<Constraint>& constraints, const Turns& start, double leave);
 
 }  // namespace spherechain::baker

@@ -95,7 +95,7 @@ Vec3 TurnedClip::within_limits(int frame, Index joint, Vec3 turn, double most) c
   const std::optional<Hinge>& hinge = joints_[joint].hinge;
   if (!hinge) return turn;
   const double bend = hinge->bend(turned(rotations_[joint][static_cast<std::size_t>(frame)], turn));
-  const double allowed = std::clamp(bend, hinge->least - kSlack, hinge->most + kSlack);
+  const double allowed = std::clamp(bend, hinge->min_bend - kSlack, hinge->max_bend + kSlack);
   return at_most(turn + (allowed - bend) * hinge->axis);
 }
 

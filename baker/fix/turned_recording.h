@@ -8,9 +8,9 @@
 
 namespace spherechain::baker {
 
-// The text of a BVH recording, its joints turned so that, carried over again, the character does what `after` says in
-// place of `before`, which is carried.clip(). Frames outside of the windows stay as they are; windows are of frames at
-// `fps`. Throws Error(kFile) where a joint that is to turn has no rotations about three axes.
+// Turns the joints of a BVH recording so that retargeting it again gives the clip `after` instead of `before`, which is
+// carried.clip(). Returns the recording's text. Frames outside of `in_window` (frames at `fps`) do not change. Throws
+// Error(kFile) if a joint that must turn has no rotations about three axes.
 std::string turned_recording(const CarriedMotion& carried, const SourceRig& rig, const Clip& before, const Clip& after,
                              const std::vector<char>& in_window, double fps);
 

@@ -11,15 +11,15 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr int kLevels = 6;       // angles that are tried, up to the budget
-constexpr int kMoves = 3;        // joints that are turned one after another
-constexpr int kHalvings = 3;     // of the last step to the way out
-constexpr double kWorthIt = .9;  // of what is in each other: a move that leaves more is none
+constexpr int kLevels = 6;       // number of angles to try, up to the budget
+constexpr int kMoves = 3;        // largest number of joints to turn one after another
+constexpr int kHalvings = 3;     // bisections of the last step to the way out
+constexpr double kWorthIt = .9;  // a move must leave less than this share of the penetration
 constexpr std::size_t kWays = 8;
-constexpr double kLeft = 1e4;      // the price of a height of what is left, against that of a radian of a shoulder
-constexpr double kSteadyWay = .1;  // seconds: what changes within is dear
+constexpr double kLeft = 1e4;      // cost of one height of residual penetration, relative to a radian at a shoulder
+constexpr double kSteadyWay = .1;  // seconds: faster changes are expensive
 
-// To the faces and corners of a cube.
+// Directions to the faces and corners of a cube.
 std::vector<Vec3> axes_to_try() {
   std::vector<Vec3> out;
   for (int x = -1; x <= 1; ++x) {
@@ -35,20 +35,21 @@ std::vector<Vec3> axes_to_try() {
 
 struct Found {
   std::vector<Vec3> turns;
-  double left;  // what is in each other
+  double left;  // residual penetration
 };
 
 class Search {
  public:
-  Search(const TurnedClip& clip, const LimbInTrouble& limb, double budget, const Turns& start, const JudgePoses& judge)
-      : clip_(clip), limb_(limb), budget_(budget), start_(start), judge_(judge) {}
+  Search(const TurnedClip& clip, const LimbInTrouble& limb, double budget, const Turns& start,
+         const EvaluatePoses& evaluate)
+      : clip_(clip), limb_(limb), budget_(budget), start_(start), evaluate_(evaluate) {}
 
   std::map<int, std::vector<Vec3>> run() {
     follow(none(limb_.from));
     for (const int frame : limb_.worst) {
       if (best(frame).left > 0) add_way(frame);
     }
-    // Where none of them leads out, one more.
+    // Adds candidates for the frames that none of them frees.
     std::set<int> hopeless;
     while (ways_ < kWays) {
       int worst = -1;
@@ -73,13 +74,13 @@ class Search {
     return out;
   }
 
-  double price(const std::vector<Vec3>& turns) const {
+  double cost(const std::vector<Vec3>& turns) const {
     double sum = 0;
-    for (const Index joint : limb_.joints) sum += turns[joint].dot(clip_.joints()[joint].price * turns[joint]);
+    for (const Index joint : limb_.joints) sum += turns[joint].dot(clip_.joints()[joint].cost * turns[joint]);
     return sum;
   }
 
-  // Those of the limb's joints, a share of the way.
+  // The turns of the limb's joints, times `share`.
   std::vector<Vec3> scaled(int frame, const std::vector<Vec3>& turns, double share) const {
     std::vector<Vec3> out = none(frame);
     for (const Index joint : limb_.joints) {
@@ -94,7 +95,7 @@ class Search {
                              [](const Found& a, const Found& b) { return a.left < b.left; });
   }
 
-  // What frees a frame best, and how far all others must go that way.
+  // Finds the turns that free a frame best, and the share of them that every other frame needs.
   void add_way(int frame) {
     Found way = best(frame);
     for (int move = 0; move < kMoves && way.left > 0; ++move) {
@@ -106,7 +107,7 @@ class Search {
     ++ways_;
   }
 
-  // Of each frame one way: the path through all that costs least.
+  // Chooses one candidate per frame: the cheapest path through all frames.
   std::map<int, std::vector<Vec3>> steadiest() const {
     const double steady = std::pow(kSteadyWay * clip_.fps(), 2);
     std::vector<std::vector<double>> sums;
@@ -121,11 +122,11 @@ class Search {
         for (std::size_t k = 0; sums.size() > 1 && k < found_.at(f - 1).size(); ++k) {
           std::vector<Vec3> change = to.turns;
           for (const Index joint : limb_.joints) change[joint] -= found_.at(f - 1)[k].turns[joint];
-          const double sum = sums[sums.size() - 2][k] + steady * price(change);
+          const double sum = sums[sums.size() - 2][k] + steady * cost(change);
           if (sum < least) chosen = k;
           least = std::min(least, sum);
         }
-        sums.back().push_back(least + price(to.turns) + kLeft * to.left);
+        sums.back().push_back(least + cost(to.turns) + kLeft * to.left);
         from.back().push_back(chosen);
       }
     }
@@ -139,14 +140,14 @@ class Search {
     return out;
   }
 
-  // Of each frame the least share of a way that frees it; without one the best.
+  // Finds the least share of a candidate that frees each frame, or else the best share.
   void follow(const std::vector<Vec3>& way) {
     constexpr std::array<double, 6> kShares{0, .25, .5, .75, 1, 1.2};
     std::vector<TriedPose> poses;
     for (int f = limb_.from; f <= limb_.to; ++f) {
       for (const double share : kShares) poses.push_back({f, scaled(f, way, share)});
     }
-    const std::vector<double> left = judge_(poses);
+    const std::vector<double> left = evaluate_(poses);
     struct Bracket {
       int frame;
       double in, out;
@@ -162,7 +163,7 @@ class Search {
     for (int i = 0; i < kHalvings; ++i) {
       poses.clear();
       for (const Bracket& b : brackets) poses.push_back({b.frame, scaled(b.frame, way, (b.in + b.out) / 2)});
-      const std::vector<double> middle = judge_(poses);
+      const std::vector<double> middle = evaluate_(poses);
       for (std::size_t k = 0; k < brackets.size(); ++k) {
         Bracket& b = brackets[k];
         (middle[k] == 0 ? b.out : b.in) = (b.in + b.out) / 2;
@@ -171,7 +172,7 @@ class Search {
     }
   }
 
-  // One joint more, by the least angle that frees; without one by the best.
+  // Turns one more joint: by the least angle that frees the frame, or else by the best one.
   Found turn_one(int frame, const Found& from) const {
     static const std::vector<Vec3> kAxes = axes_to_try();
     Found best = from;
@@ -185,10 +186,10 @@ class Search {
           poses.push_back({frame, std::move(turns)});
         }
       }
-      const std::vector<double> left = judge_(poses);
+      const std::vector<double> left = evaluate_(poses);
       for (std::size_t i = 0; i < poses.size(); ++i) {
         const bool is_cheaper =
-            left[i] == best.left && best.left < from.left && price(poses[i].turns) < price(best.turns);
+            left[i] == best.left && best.left < from.left && cost(poses[i].turns) < cost(best.turns);
         if (left[i] < best.left || is_cheaper) best = {poses[i].turns, left[i]};
       }
       if (best.left == 0) break;
@@ -200,16 +201,16 @@ class Search {
   const LimbInTrouble& limb_;
   double budget_;
   const Turns& start_;
-  const JudgePoses& judge_;
+  const EvaluatePoses& evaluate_;
   std::size_t ways_ = 0;
-  std::map<int, std::vector<Found>> found_;  // of each frame: itself, then what each way comes to
+  std::map<int, std::vector<Found>> found_;  // by frame: the frame itself, then each candidate
 };
 
 }  // namespace
 
 std::map<int, std::vector<Vec3>> find_way_out(const TurnedClip& clip, const LimbInTrouble& limb, double budget,
-                                              const Turns& start, const JudgePoses& judge) {
-  return Search(clip, limb, budget, start, judge).run();
+                                              const Turns& start, const EvaluatePoses& evaluate) {
+  return Search(clip, limb, budget, start, evaluate).run();
 }
 
 }  // namespace spherechain::baker

@@ -11,20 +11,20 @@ namespace spherechain::baker {
 
 struct LimbInTrouble;
 
-// A frame with its joints turned otherwise.
+// A candidate pose: a frame with other turns.
 struct TriedPose {
   int frame;
-  std::vector<Vec3> turns;  // of each joint
+  std::vector<Vec3> turns;  // by joint
 };
 
-// How much is in each other in poses, in heights; 0: nothing.
-using JudgePoses = std::function<std::vector<double>(const std::vector<TriedPose>&)>;
+// Returns the residual penetration of each pose, in heights. 0: free.
+using EvaluatePoses = std::function<std::vector<double>(const std::vector<TriedPose>&)>;
 
-// Turns of a limb's joints that free it, tried out: joint by joint and axis by axis, up to `budget` radians, in the
-// worst frames. Each frame follows the way of one of these, as far as it must; which, is what costs least and is
-// steadiest over all frames. A frame that nothing frees has what is best. Of each frame: all joints' turns, `start` but
-// for the limb's.
+// Searches turns of a limb's joints that free it, up to `budget` radians: joint by joint and axis by axis, in the worst
+// frames. Each other frame scales one of these candidates as little as it can. The choice over all frames has the least
+// cost and change. A frame that no candidate frees takes its best one. Returns the turns of all joints by frame; joints
+// outside of the limb keep `start`.
 std::map<int, std::vector<Vec3>> find_way_out(const TurnedClip& clip, const LimbInTrouble& limb, double budget,
-                                              const Turns& start, const JudgePoses& judge);
+                                              const Turns& start, const EvaluatePoses& evaluate);
 
 }  // namespace spherechain::baker

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an importer read as bytes, and back: from a child process to its parent, so neither order nor layout lasts.
+// Writes an importer's result as bytes, and reads it back: from a child process to its parent, so neither order nor
+// layout lasts.
 #pragma once
 
 #include <concepts>

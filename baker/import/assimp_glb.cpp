@@ -88,7 +88,7 @@ class GlbOfScene {
     }
   }
 
-  // What shears has no parts: it stays a matrix, which no clip can animate.
+  // A transform with shear cannot be split: it stays a matrix, which no clip can animate.
   static void put_transform(const Node& node, bool is_animated, ordered_json& out) {
     Affine parts = Affine::Identity();
     parts.linear() = node.rotation.toRotationMatrix() * node.scale.asDiagonal();

@@ -48,7 +48,7 @@ VertexWeights largest(Influences influences) {
   return out;
 }
 
-// What no bone holds moves with the mesh's node.
+// Vertices without bones move with the mesh's node.
 void read_weights(const MeshInstance& instance, const AssimpScene& flat, const std::string& file, Bones& bones,
                   SourceRig& rig) {
   const aiMesh& mesh = *instance.mesh;

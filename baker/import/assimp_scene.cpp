@@ -73,8 +73,8 @@ void visit(const aiScene& scene, const NamesOfNodes& names, const aiNode& node, 
   }
 }
 
-// What a skeleton at rest does to a mesh beyond its node's transform, which most formats leave out of a skin: other
-// axes, other units. What is no quarter turn is the pose, and that the rest positions keep out.
+// The axes and units that a skeleton at rest adds to a mesh's node, and that most formats leave out of a skin.
+// Rotations other than quarter turns belong to the pose; the rest positions leave them out.
 Affine axes_and_units(const Affine& shown) {
   double scale = std::cbrt(std::abs(shown.linear().determinant()));
   if (!(scale > 0) || !std::isfinite(scale)) return Affine::Identity();

@@ -15,7 +15,7 @@
 namespace spherechain::baker {
 namespace {
 
-// Of a character's diagonal: past these, squares of lengths leave what single precision and CGAL's inexact steps hold.
+// Limits of a character's diagonal: beyond them, squared lengths overflow single precision or CGAL's inexact steps.
 constexpr double kSizeMin = 1e-6, kSizeMax = 1e12;
 
 bool same_position(const Vec3& a, const Vec3& b) { return a.x() == b.x() && a.y() == b.y() && a.z() == b.z(); }

@@ -49,7 +49,7 @@ std::optional<Level> level_of(std::string name) {
   return Level{name, number};
 }
 
-// Of each node its own level, or that of the nearest node above that has one.
+// The level of each node: its own, or that of the nearest ancestor that has one.
 std::vector<std::optional<Level>> levels_of(const std::vector<Node>& nodes) {
   std::vector<std::optional<Level>> out;
   for (const Node& node : nodes) {

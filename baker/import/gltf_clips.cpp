@@ -100,7 +100,7 @@ class ClipReader {
     }
   }
 
-  // Of rotations and weights: fractions may be integers.
+  // Rotations and weights may be stored as integer fractions.
   const std::vector<int> kUnit{kFloatType, TINYGLTF_COMPONENT_TYPE_BYTE, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE,
                                TINYGLTF_COMPONENT_TYPE_SHORT, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT};
   const GltfFile& file_;

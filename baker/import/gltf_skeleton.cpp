@@ -11,7 +11,7 @@
 namespace spherechain::baker {
 namespace {
 
-// Of the figures of two transforms that mean the same. Exporters invert their matrices in single precision.
+// Tolerance for equal transforms. Exporters invert their matrices in single precision.
 constexpr double kSame = 1e-5;
 
 bool invertible(const Affine& a) {

@@ -30,8 +30,8 @@ std::string extension_of(const std::filesystem::path& path) {
   return extension;
 }
 
-// A glTF is told by its first bytes, whatever its ending (a .vrm is a GLB). No other format begins with a JSON object.
-// Through assimp a glTF would lose its own vertex order and bind pose.
+// A glTF is recognised by its first bytes, whatever its ending (a .vrm is a GLB). No other format begins with a JSON
+// object. Through assimp a glTF would lose its own vertex order and bind pose.
 bool is_gltf(const std::filesystem::path& path) {
   std::string start(64, '\0');
   std::ifstream file(path, std::ios::binary);
@@ -60,7 +60,7 @@ void make_rigid(SourceMesh& mesh) {
   mesh.rig.weights.assign(mesh.positions.size(), whole);
 }
 
-// What the child process tells.
+// A mesh that the child process sends, with its notes.
 struct NotedMesh {
   SourceMesh mesh;
   std::vector<std::string> notes;
@@ -131,14 +131,14 @@ SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& o
     mesh.importer = "bvh";
     mesh.rig = read_bvh(path);
   } else {
-    auto told = from_bytes<NotedMesh>(read_in_child(path.string(), [&] {
+    auto received = from_bytes<NotedMesh>(read_in_child(path.string(), [&] {
       take_notes();  // the parent's
       NotedMesh read{is_gltf(path) ? read_with_tinygltf(path, options) : read_with_assimp(path, options), {}};
       read.notes = take_notes();
       return to_bytes(read);
     }));
-    for (const std::string& note : told.notes) add_note(note);
-    mesh = std::move(told.mesh);
+    for (const std::string& note : received.notes) add_note(note);
+    mesh = std::move(received.mesh);
   }
   clean_names(mesh.rig);
   if (options.prop) make_rigid(mesh);

@@ -12,7 +12,7 @@
 
 namespace spherechain::baker {
 
-// What cleaning found and did; all of it goes into the bake report.
+// Findings and repairs of the import, for the bake report.
 struct ImportReport {
   std::string importer;                // "assimp" or "tinygltf"
   std::size_t meshes = 0;              // mesh instances in the source's scene

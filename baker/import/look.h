@@ -10,7 +10,7 @@
 
 namespace spherechain::baker {
 
-// What a material gives to a skin's colour. Colours are sRGB from 0 to 1.
+// Colour that a material gives to the skin. Colours are sRGB from 0 to 1.
 struct SkinMaterial {
   std::array<float, 3> colour{1, 1, 1};  // where there is no picture
   std::array<float, 3> tint{1, 1, 1};    // of the picture

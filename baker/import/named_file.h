@@ -28,7 +28,7 @@ NamedFile named_by_uri(const std::filesystem::path& folder, const std::string& u
 // that is a file in the folder, "tex/skin.png" before "skin.png" of "C:\hero\tex\skin.png".
 NamedFile named_picture(const std::filesystem::path& folder, std::string name);
 
-// What a file names and lacks, for a note (notes.h).
+// Files that a file names and that are missing, for a note (notes.h).
 class LostFiles {
  public:
   void add(const std::string& name, const NamedFile& file);

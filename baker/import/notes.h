@@ -6,8 +6,8 @@
 
 namespace spherechain::baker {
 
-// What imports tell the user beside their result, such as files that are named and not read: a line each, which begins
-// with the file's name. They wait in this process until a command shows them. Not for several threads.
+// Notes to the user, such as missing files: one line each, which begins with the file's name. They wait in this process
+// until a command prints them. Not thread-safe.
 void add_note(const std::string& note);  // once, however often it comes
 std::vector<std::string> take_notes();
 

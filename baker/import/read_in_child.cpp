@@ -41,10 +41,10 @@ int limit(const char* name, int otherwise) {
   return value;
 }
 
-// What the child sends: the bytes that were read, or an error's words and exit code, and then one of these.
-enum class Outcome : char { kRead, kError, kInternal, kMemory };
+// Status byte of the child. It follows the bytes read, or an error's words and exit code.
+enum class ChildStatus : char { kRead, kError, kInternal, kMemory };
 
-std::string message(std::string bytes, Outcome outcome) {
+std::string message(std::string bytes, ChildStatus outcome) {
   bytes.push_back(static_cast<char>(outcome));
   return bytes;
 }
@@ -72,13 +72,13 @@ void set_limits(int seconds, int megabytes) {
 
 std::string outcome_of(const std::function<std::string()>& read) {
   try {
-    return message(read(), Outcome::kRead);
+    return message(read(), ChildStatus::kRead);
   } catch (const Error& error) {
-    return message(std::string(error.what()) + static_cast<char>(error.code()), Outcome::kError);
+    return message(std::string(error.what()) + static_cast<char>(error.code()), ChildStatus::kError);
   } catch (const std::bad_alloc&) {
-    return message({}, Outcome::kMemory);
+    return message({}, ChildStatus::kMemory);
   } catch (const std::exception& error) {
-    return message(error.what(), Outcome::kInternal);
+    return message(error.what(), ChildStatus::kInternal);
   }
 }
 
@@ -104,7 +104,7 @@ bool receive(int pipe, Clock::time_point end, std::string& bytes) {
   }
 }
 
-// What is left of a child: what it sent, whether it ended in time, and how, as waitpid has it.
+// Result of a child process: its output, its wait status (as waitpid returns it), and if it ended in time.
 struct Ended {
   std::string bytes;
   bool is_in_time;
@@ -159,17 +159,17 @@ std::string read_in_child(const std::string& file, const std::function<std::stri
     const char* how = WIFSIGNALED(child.status) ? ::strsignal(WTERMSIG(child.status)) : "it ends early";
     fail(std::string("crashes its importer (") + how + "; the file is damaged: export it again)");
   }
-  const auto outcome = static_cast<Outcome>(bytes.back());
+  const auto outcome = static_cast<ChildStatus>(bytes.back());
   bytes.pop_back();
   switch (outcome) {
-    case Outcome::kRead:
+    case ChildStatus::kRead:
       return bytes;
-    case Outcome::kError:
+    case ChildStatus::kError:
       throw Error(static_cast<ExitCode>(bytes.back()), bytes.substr(0, bytes.size() - 1));
-    case Outcome::kMemory:
+    case ChildStatus::kMemory:
       fail("needs more than " + std::to_string(megabytes) + " MB of memory to read" + std::string(kDamaged) +
            kMemoryName + " allows more)");
-    case Outcome::kInternal:
+    case ChildStatus::kInternal:
       break;
   }
   throw std::runtime_error(bytes);

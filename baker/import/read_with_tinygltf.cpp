@@ -89,7 +89,7 @@ GltfNodes with_chosen_meshes(const GltfFile& file, GltfNodes nodes, const std::s
   return nodes;
 }
 
-// What moves a primitive: a skin, or the node it hangs on.
+// The skin or node that moves a primitive.
 struct Carrier {
   Affine to_rest;             // from the primitive's space
   const GltfSkin* skin;       // null: rigid
@@ -105,7 +105,7 @@ class GltfReader {
         skeleton_(file, nodes_, skins_of_scene(file, nodes_)),
         morphs_of_node_(file.model.nodes.size()) {}
 
-  // Of the source that read() gave.
+  // Reads the look of the source that read() returned.
   SourceLook read_look(const std::filesystem::path& path) {
     GltfLook out(file_, path);
     for (const auto& [primitive, part] : vertices_read_) out.add_vertices(*primitive, part);

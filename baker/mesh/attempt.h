@@ -21,8 +21,8 @@ struct Reason {
   Cause cause = Cause::kFailed;
 };
 
-// What a strategy returns: its result, or the reason why there is none. A stage with several strategies tries them in
-// order; what it throws, when all have failed, is for the user. (C++23 has std::expected for this.)
+// Return value of a strategy: a result, or the reason why there is none. A stage tries its strategies in order. The
+// error that it throws when all have failed is for the user. (C++23 has std::expected for this.)
 template <typename T>
 class Attempt {
  public:

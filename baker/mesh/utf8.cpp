@@ -14,9 +14,9 @@ std::optional<CodePoint> first_code_point(std::string_view text) {
     if ((byte(i) & 0xC0) != 0x80) return {};
     code = code << 6 | (byte(i) & 0x3F);
   }
-  constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
+  constexpr std::uint32_t kCodeMin[] = {0, 0, 0x80, 0x800, 0x10000};
   const bool is_surrogate = code >= 0xD800 && code < 0xE000;
-  if (code < kLeast[length] || code > 0x10FFFF || is_surrogate) return {};
+  if (code < kCodeMin[length] || code > 0x10FFFF || is_surrogate) return {};
   return CodePoint{code, length};
 }
 

@@ -19,7 +19,7 @@ const Joint& joint(const RoleJoints& joints, const std::string& role) {
   return joints.joints[static_cast<std::size_t>(joints.find(role))];
 }
 
-// A spine ends at the neck, or where nobody told it apart, at the head.
+// A spine ends at the neck, or where nobody named it, at the head.
 const char* spine_end(const RoleJoints& joints) { return joints.find("neck") >= 0 ? "neck" : "head"; }
 
 bool has_legs_and_neck(const RoleJoints& joints) {
@@ -141,9 +141,10 @@ CaptureMotion::CaptureMotion(Capture capture, CaptureBody body) : capture_(std::
   std::vector<Affine> world = world_of(rig.nodes);
   RoleJoints reference = joints_by_role(rig.nodes, capture_.roles, places(world));
   if (!has_legs_and_neck(reference)) {
-    throw Error(ExitCode::kFile, capture_.file +
-                                     ": hips, knees, ankles and head cannot be told in its skeleton (name the joints "
-                                     "as usual)");
+    throw Error(ExitCode::kFile,
+                capture_.file +
+                    ": hips, knees, ankles and head cannot be recognised in its skeleton (name the joints "
+                    "as usual)");
   }
   std::optional<Eigen::Matrix3d> standing = standing_axes(reference);
   for (int i = 0; i < kSamples && !standing; ++i) {

@@ -31,9 +31,9 @@ struct CaptureBody {
   std::vector<Index> joint_of_bone;
 };
 // Both throw Error(kFile) that begins with `file` and says what the body lacks where it has no two legs.
-// Of the automatic rig's joints, which are a bone each; none where the body is no biped.
+// The roles of the automatic rig's joints, which are a bone each; none where the body is no biped.
 CaptureBody body_of(const std::vector<Joint>& joints, const BodyFrame& frame, const std::string& file);
-// Of a skin's own skeleton.
+// Makes a capture body of the skin's own skeleton.
 CaptureBody body_of(const SourceRig& rig, const std::vector<Vec3>& rest, const BodyFrame& frame,
                     const std::string& file);
 

@@ -60,12 +60,12 @@ double same_skeleton(const SourceRig& rig, const SourceRig& capture) {
   }
   if (ratios.empty()) return 0;
   const double unit = weighted_quantile(std::move(ratios), 0.5);
-  constexpr double kSame = 0.02, kMost = 0.75;
+  constexpr double kSame = 0.02, kAlikeMin = 0.75;
   const double tolerance = kSame * length_sum / static_cast<double>(bones.size());
   const auto alike = std::count_if(bones.begin(), bones.end(), [&](const auto& pair) {
     return (pair.first - unit * pair.second).norm() <= tolerance;
   });
-  return static_cast<double>(alike) >= kMost * static_cast<double>(bones.size()) ? unit : 0;
+  return static_cast<double>(alike) >= kAlikeMin * static_cast<double>(bones.size()) ? unit : 0;
 }
 
 const Affine& parent_of(const Node& node, const std::vector<Affine>& world) {
@@ -158,7 +158,7 @@ struct Path {
   std::vector<Eigen::Vector4d> values;
 };
 
-// Of three, one or none key where that is the same to within `tolerance`.
+// Adds a path's keys: none if it stays at rest, one if it stands still within `tolerance`, else all.
 void add_channel(const Path& path, Index node, const std::vector<double>& times, double tolerance, Clip& clip) {
   const auto is = [&](const Eigen::Vector4d& value) {
     return [&, value](const Eigen::Vector4d& one) { return (one - value).norm() <= tolerance; };
@@ -193,7 +193,7 @@ class CarriedByRole : public CarriedMotion {
       if (bone_of[bone.node] == nullptr) bone_of[bone.node] = &bone;
       if (moved[b] > 0) moves_[bone.node] = 1;
     }
-    // What stands above all joints and moves no skin stays where it is: the root of a scene, an armature.
+    // Nodes above all joints that move no skin stay in place: the root of a scene, an armature.
     for (const Index node : motion_.body().joints.node) is_under_joint[node] = 1;
     for (Index n = 0; n < rig.nodes.size(); ++n) {
       const Node& node = rig.nodes[n];

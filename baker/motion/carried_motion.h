@@ -17,8 +17,8 @@ class CarriedMotion : public Motion {
   virtual const Capture& capture() const = 0;
   int frame_count() const override { return duration() > 0 ? 0 : 1; }  // of one pose
 
-  // What the character's nodes do, with keys at the recording's frames; paths that stay as at rest have no channel.
-  // Throws Error(kFile) where no rotations and translations of nodes give the motion: bones are sheared.
+  // The motion of the character's nodes, with keys at the recording's frames. Paths that keep their rest value have no
+  // channel. Throws Error(kFile) if bones are sheared: rotations and translations cannot express that.
   virtual Clip clip() const = 0;
 
   // The character's nodes whose turns the recording can take over.

@@ -28,7 +28,7 @@ struct PoseMotion {
   std::vector<Pose> poses;
 };
 
-// Whose joints a pose file names.
+// The rig whose joints a pose file names.
 enum class PoseRig { kAutomatic, kOwn };
 
 // Throws Error(kFile) that names the file and the cause.

@@ -26,7 +26,7 @@ void measure_f(PageSphere& out, const RestSphere& sphere, const Character& chara
   out.mean_abs_f = vertices.empty() ? 0 : sum / static_cast<double>(vertices.size());
 }
 
-// Pivots are told by their corners.
+// Pivots are recognised by their corners.
 void find_pivots(PageSphere& out, const RestSphere& sphere, const OpenAsset& asset, const Character& character) {
   for (std::uint32_t p = 0; p < sphere.pivot_count; ++p) {
     const Pivot& pivot = asset->pivots()[sphere.first_pivot + p];
@@ -74,7 +74,7 @@ std::vector<PageSphere> page_spheres(const OpenAsset& asset, const Character& ch
 }
 
 PageParts page_parts(const OpenAsset& asset) {
-  BodyParts parts = parts_of(asset);
+  BodyParts parts = body_parts_of(asset);
   PageParts out;
   for (const BodyPart& part : parts.parts) out.names.push_back(part.name);
   out.of_triangle = std::move(parts.of_triangle);

@@ -30,7 +30,7 @@ struct PageParts {
 };
 PageParts page_parts(const OpenAsset& asset);
 
-// What one frame shows. Triangles are source triangle numbers.
+// Contents of one frame. Triangles are source triangle numbers.
 struct PageFrame {
   std::vector<std::array<std::uint32_t, 2>> contacts;  // triangles of the skin that intersect
   std::vector<Penetration> penetrations;                // deepest first

@@ -34,13 +34,13 @@ struct PageOptions {
 inline constexpr std::size_t kLargePageBytes = 50'000'000;
 
 // The page of `spherechain view`: the template with its data inside (baker/page/README.md describes them). `progress`
-// is told each frame before it is played. Throws Error(kFile) where the template is missing or no page, or where the
+// gets each frame before it is played. Throws Error(kFile) where the template is missing or no page, or where the
 // asset cannot tell contacts; Error(kUsage) where the page has more than `max_bytes`, before many frames are played if
 // their motion alone has.
 std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
                       const std::function<void(int)>& progress);
 
-// What the pages of a character's clips share, as JSON: the keys that do not depend on a motion, without chains.
+// Data that the pages of a character's clips share, as JSON: the keys that do not depend on a motion, without chains.
 std::string character_page(const AnimatedAsset& animated);
 
 }  // namespace spherechain::baker

@@ -9,7 +9,7 @@
 
 namespace spherechain::baker {
 
-// What the page's editor needs: each region's own coordinates, and the edits that the bake applied.
+// Data for the page's editor: each region's own coordinates, and the edits that the bake applied.
 nlohmann::ordered_json page_edits(const AnimatedAsset& animated, const std::vector<PageSphere>& spheres);
 
 }  // namespace spherechain::baker

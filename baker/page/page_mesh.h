@@ -13,7 +13,7 @@ namespace spherechain::baker {
 nlohmann::ordered_json page_mesh(const std::vector<Vec3>& rest, const std::vector<Triangle>& triangles,
                                  const std::vector<VertexWeights>& weights, const PageParts& parts,
                                  const std::vector<PageSphere>& spheres);
-// Of what plays.
+// The mesh that plays.
 nlohmann::ordered_json page_mesh(const AnimatedAsset& animated, const std::vector<Vec3>& rest, const PageParts& parts,
                                  const std::vector<PageSphere>& spheres);
 

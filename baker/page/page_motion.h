@@ -10,7 +10,7 @@
 
 namespace spherechain::baker {
 
-// What moves the mesh, frame by frame: bones and weights of morph targets, or the vertices themselves.
+// Data that moves the mesh in each frame: bones and weights of morph targets, or the vertices themselves.
 class PageMotion {
  public:
   PageMotion(const Character& character, const BodyFrame& axes) : character_(character), axes_(axes) {}

@@ -203,7 +203,7 @@ class Both {
   std::array<std::size_t, 2> bones_;
 };
 
-// What touches in a frame: in each of the two, and between them.
+// Contacts of a frame: within each of the two characters, and between them.
 class Contacts {
  public:
   Contacts(const AnimatedAsset& first, const AnimatedAsset& second, const Both& both, bool they_meet)

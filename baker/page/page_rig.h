@@ -7,7 +7,7 @@
 
 namespace spherechain::baker {
 
-// What the page needs to pose the character by hand; null where the bones of the asset do not move it.
+// Data for posing the character by hand. Null if the bones of the asset do not move it.
 nlohmann::ordered_json page_rig(const AnimatedAsset& animated);
 
 }  // namespace spherechain::baker

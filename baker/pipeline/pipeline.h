@@ -27,7 +27,7 @@
 
 namespace spherechain::baker {
 
-// What a bake has to reach; where it does not, the asset is written and the exit code says so.
+// Targets of a bake. If one is missed, the asset is still written and the exit code says so.
 struct Targets {
   std::optional<FitGrade> fit;  // or better
 };
@@ -97,7 +97,7 @@ struct Segmentation {
   Choice choice;
 };
 
-// Whose skin may be wrapped. It takes long, and where bones move the skin the fit by bones stands in.
+// Characters whose skin may be wrapped. Wrapping is slow; where bones move the skin, the fit by bones replaces it.
 enum class Wraps : std::uint8_t { kUnmoved, kAll };
 
 // Tries the strategies of segmentation in order: by shape, by rig, and both on a closed surface made of the skin. The
@@ -123,7 +123,7 @@ FittedCharacter fit_character(Character character, const Roles& roles, const Bak
 // Makes the body what segment_character makes of it without a rig: for what depends on the body alone (bone heat).
 void close_body(Character& character, const SegmentSettings& settings);
 
-// Runs every stage. `progress` is told each stage's name before it runs; it may be empty.
+// Runs every stage. `progress` gets each stage's name before it runs; it may be empty.
 Bake bake(const std::filesystem::path& input, const BakeSettings& settings,
           const std::function<void(const std::string&)>& progress);
 
@@ -131,7 +131,7 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings,
 // the fit are the same, the spheres stay. Neither bake has edits.
 Bake rebake(const Bake& bake, const BakeSettings& settings);
 
-// What the settings ask for and the bake has not reached, a sentence each.
+// Targets that the settings ask for and the bake missed, a sentence each.
 std::vector<std::string> missed_targets(const Bake& bake);
 
 }  // namespace spherechain::baker

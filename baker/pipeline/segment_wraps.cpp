@@ -48,17 +48,18 @@ class WrapSearch {
     if (coarse->lines_skin()) {
       // Through holes wider than the ball, and finer wraps would be slow: holes closed by fans, or larger balls.
       for (const WrapSize& size : {WrapSize{60, true}, WrapSize{90, true}, WrapSize{40}, WrapSize{40, true}}) {
-        if (attempt(size) == Outcome::kGood) break;
+        if (attempt(size) == WrapResult::kGood) break;
       }
     } else {
       constexpr double kOfHuman = 6000;  // triangles at 60; stouter bodies have more, and shorter limbs to tell apart
       const double usual = 130 * std::min(1.0, std::sqrt(kOfHuman / static_cast<double>(triangles_)));
-      const Outcome first = attempt({usual});
+      const WrapResult first = attempt({usual});
       const double finest = usual * std::sqrt(static_cast<double>(kWrapTrianglesMax) / static_cast<double>(triangles_));
       for (const double fineness : {200.0, 90.0, kCoarse.fineness}) {
-        if (first == Outcome::kGood || (first == Outcome::kLeaks && fineness > usual) || fineness > finest) continue;
+        if (first == WrapResult::kGood || (first == WrapResult::kLeaks && fineness > usual) || fineness > finest)
+          continue;
         const bool is_coarse = fineness == kCoarse.fineness;
-        if ((is_coarse ? attempt(kCoarse, std::move(coarse)) : attempt({fineness})) == Outcome::kGood) break;
+        if ((is_coarse ? attempt(kCoarse, std::move(coarse)) : attempt({fineness})) == WrapResult::kGood) break;
       }
     }
     for (std::size_t i = 0; i < tried_.size(); ++i) {
@@ -70,7 +71,7 @@ class WrapSearch {
   }
 
  private:
-  enum class Outcome : std::uint8_t { kGood, kLeaks, kFails };
+  enum class WrapResult : std::uint8_t { kGood, kLeaks, kFails };
 
   struct Result {
     Regions regions;
@@ -78,19 +79,19 @@ class WrapSearch {
     std::size_t tried;  // its place in tried_
   };
 
-  Outcome attempt(const WrapSize& size) { return attempt(size, wrap_skin(character_.skin, size, closing_)); }
+  WrapResult attempt(const WrapSize& size) { return attempt(size, wrap_skin(character_.skin, size, closing_)); }
 
-  Outcome attempt(const WrapSize& size, Attempt<Wrap> wrap) {
+  WrapResult attempt(const WrapSize& size, Attempt<Wrap> wrap) {
     tried_.push_back({name_of(size), {}});
     Reason& reason = tried_.back().reason;
     if (!wrap) {
       reason = wrap.reason();
-      return Outcome::kFails;
+      return WrapResult::kFails;
     }
     triangles_ = wrap->surface.triangles.size();
     if (wrap->lines_skin()) {
       reason = {"it lines the skin from inside"};
-      return Outcome::kLeaks;
+      return WrapResult::kLeaks;
     }
     constexpr double kThinGood = 0.02;
     const bool leaks = wrap->thin > kThinGood;
@@ -99,7 +100,7 @@ class WrapSearch {
     if (!regions) {
       reason = regions.reason();
       if (!reason_) reason_ = reason;
-      return leaks ? Outcome::kLeaks : Outcome::kFails;
+      return leaks ? WrapResult::kLeaks : WrapResult::kFails;
     }
     reason = {"another wrap is better"};
     const bool expected = is_expected(*regions, settings_);
@@ -108,8 +109,8 @@ class WrapSearch {
     if (!best_ || is_better(expected, wrap->thin)) {
       best_ = Result{std::move(*regions), std::move(*wrap), tried_.size() - 1};
     }
-    if (leaks) return Outcome::kLeaks;
-    return expected || again ? Outcome::kGood : Outcome::kFails;
+    if (leaks) return WrapResult::kLeaks;
+    return expected || again ? WrapResult::kGood : WrapResult::kFails;
   }
 
   bool is_better(bool expected, double thin) const {

@@ -43,7 +43,7 @@ struct MotionFrames {
   std::vector<MotionFrame> frames;
 };
 
-// Of clips, one after another.
+// Frames of clips, one clip after another.
 MotionFrames frames_of(const SourceRig& rig, const std::vector<const Clip*>& clips, const FrameChoice& choice);
 
 // So far on the way from a frame to the next of its clip.
@@ -52,7 +52,7 @@ MotionFrame frame_between(const MotionFrame& frame, const MotionFrame& next, dou
 // With frames more, of each frame those at these shares of the way to the next.
 MotionFrames with_frames_between(const MotionFrames& frames, const std::vector<std::vector<double>>& shares);
 
-// Of another motion; null is the rest pose.
+// Frames of another motion. Null stands for the rest pose.
 MotionFrames frames_of(const Motion* motion, const FrameChoice& choice);
 
 }  // namespace spherechain::baker

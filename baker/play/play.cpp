@@ -19,7 +19,7 @@ namespace {
 
 Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
 
-// What the asset was baked with: other options read other vertices, and another body may be closed.
+// Settings that the asset was baked with: others would read other vertices, or close another body.
 BakeSettings settings_of(const OpenAsset& asset, const std::string& file) {
   return make_settings("balanced", asset->info().settings, file);
 }
@@ -225,7 +225,7 @@ std::vector<Joint> joints_of(const OpenAsset& asset) {
 
 double mm_per_unit(const OpenAsset& asset) { return 1000 * double{asset->info().metres_per_unit}; }
 
-BodyParts parts_of(const OpenAsset& asset) {
+BodyParts body_parts_of(const OpenAsset& asset) {
   constexpr std::uint8_t kNone = 255;
   BodyParts out;
   for (std::size_t i = 0; i < asset->part_count(); ++i) {

@@ -17,7 +17,7 @@
 
 namespace spherechain::baker {
 
-// What to play: at most one. None: all clips of the source's own, or where it has none, the rest pose.
+// The motion to play: at most one. If empty: all clips in the source, or the rest pose if it has none.
 struct MotionChoice {
   std::string poses;   // a pose file, or whole meshes that are poses (motion/sequence.h)
   std::string clip;    // name or number of a clip of the source's own
@@ -32,7 +32,7 @@ class AnimatedAsset {
   // Throws Error(kFile) where a file has the wrong content, or the source is not the asset's.
   AnimatedAsset(const std::string& asset, const std::string& source, const MotionChoice& motion,
                 const FrameChoice& frames);
-  // Of an asset that is open; `name` is for messages.
+  // Uses an asset that is already open; `name` is for messages.
   AnimatedAsset(OpenAsset asset, const std::string& name, const std::string& source, const MotionChoice& motion,
                 const FrameChoice& frames);
 
@@ -57,7 +57,7 @@ class AnimatedAsset {
   void check_clusters() const;
   BodyFrame frame() const;
 
-  // Of every source vertex; empty where nothing moves.
+  // Weights of every source vertex. Empty if nothing moves.
   const std::vector<VertexWeights>& weights() const { return weights_; }
   const std::vector<std::string>& bone_names() const { return bone_names_; }
   Roles roles() const;  // of the source's nodes, as in the bake
@@ -99,17 +99,17 @@ class AnimatedAsset {
   double fps_;
 };
 
-// Of the source's units.
+// Millimetres in one of the source's units.
 double mm_per_unit(const OpenAsset& asset);
 
 // The automatic rig's; empty for a character with bones of its own.
 std::vector<Joint> joints_of(const OpenAsset& asset);
 
 // The asset's body parts; 255 where a source triangle has none.
-BodyParts parts_of(const OpenAsset& asset);
+BodyParts body_parts_of(const OpenAsset& asset);
 
-// What a game would hand to the runtime: rows of a 3 by 4 matrix for each of the asset's bones, the identity for what
-// hangs on none.
+// The bone matrices that a game passes to the runtime: rows of a 3 by 4 matrix for each of the asset's bones. Bone
+// slots without a bone get the identity.
 std::vector<float> bone_palette(const OpenAsset& asset, const Deformation& deformation);
 
 }  // namespace spherechain::baker

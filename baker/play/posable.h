@@ -16,8 +16,8 @@ struct PosableLimb {
   bool stands = false;  // a leg: its end stays where it is while the hips move
 };
 
-// What of a character can be posed by hand: the joints that move its skin, which a pose file names, and handles on
-// them.
+// The part of a character that can be posed by hand: the joints that move its skin, which a pose file names, and
+// handles on them.
 struct PosableRig {
   PoseRig rig = PoseRig::kOwn;
   std::vector<Joint> joints;  // one for each of the asset's bones that has a name, in their order
@@ -26,7 +26,7 @@ struct PosableRig {
   Vec3 head_center = Vec3::Zero();      // of its skin, at rest
 };
 
-// Of the joints that move the skin now. No joints where it is not moved by the bones of the asset.
+// Finds the joints that move the skin now. No joints if the bones of the asset do not move it.
 PosableRig posable_rig(const AnimatedAsset& animated);
 
 }  // namespace spherechain::baker

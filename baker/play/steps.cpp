@@ -13,10 +13,10 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kMostParts = 64;    // of a step
+constexpr double kPartsMax = 64;     // of a step
 constexpr double kApart = 1.0 / 16;  // of a step: nearer to each other they share a frame
 
-// Of each of the asset's bones the nearest one above it; -1: none.
+// For each of the asset's bones the nearest one above it; -1: no bone.
 std::vector<int> bone_parents(const AnimatedAsset& animated) {
   const OpenAsset& asset = animated.asset();
   const SourceRig& rig = animated.character().rig;
@@ -168,8 +168,8 @@ const std::vector<StepContact>& StepPlayer::find(const Deformation& from, const 
 
 namespace {
 
-// Of some poses while they touch the one in which two body parts are deepest in each other; where they touch in none,
-// as of a part that is wholly inside the other, the first time.
+// Tries poses along the step and takes the one in which two body parts are deepest while they touch. If they touch in
+// no pose (one part may be wholly inside the other), takes the first time of contact.
 double deepest_share(const AnimatedAsset& animated, int frame, const StepContact& contact, SkinPlayer& player) {
   constexpr int kParts = 8;
   double share = double{contact.begin}, most = -1;
@@ -189,8 +189,8 @@ double deepest_share(const AnimatedAsset& animated, int frame, const StepContact
   return share;
 }
 
-// What touches on the way from a frame to the next and in neither of them. The way goes through the clip's own keys
-// between them, `parts` of it to a frame.
+// Finds contacts between a frame and the next that neither frame has. The motion goes through the clip's own keys, in
+// `parts` steps a frame.
 std::vector<StepContact> find_between(const AnimatedAsset& animated, int frame, const Deformation& from,
                                       const Deformation& to, int parts, StepPlayer& steps) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, StepContact> found;
@@ -214,7 +214,7 @@ std::vector<StepContact> find_between(const AnimatedAsset& animated, int frame, 
     before = std::move(next);
   }
   std::vector<StepContact> out;
-  for (const auto& [parts_of, contact] : found) {
+  for (const auto& [pair, contact] : found) {
     if (contact.at_start == 0 && contact.at_end == 0) out.push_back(contact);
   }
   return out;
@@ -223,7 +223,7 @@ std::vector<StepContact> find_between(const AnimatedAsset& animated, int frame, 
 }  // namespace
 
 void look_between_frames(AnimatedAsset& animated, Target target, std::size_t clip,
-                         const std::function<void(int)>& told) {
+                         const std::function<void(int)>& progress) {
   animated.check_clusters();
   StepPlayer steps(animated, target);
   SkinPlayer player(animated.asset(), target);
@@ -231,12 +231,12 @@ void look_between_frames(AnimatedAsset& animated, Target target, std::size_t cli
   Deformation before;
   const int first = animated.clips()[clip].first, end = first + animated.clips()[clip].count;
   for (int i = first; i < end; ++i) {
-    told(i);
+    progress(i);
     Deformation deformation = animated.deformation(i);
     if (i > first) {
       std::vector<double>& shares = between[static_cast<std::size_t>(i - 1)];
       const double seconds = animated.time(i) - animated.time(i - 1);
-      const double parts = std::clamp(std::ceil(seconds * animated.own_rate(clip) - 0.01), 1.0, kMostParts);
+      const double parts = std::clamp(std::ceil(seconds * animated.own_rate(clip) - 0.01), 1.0, kPartsMax);
       for (const StepContact& contact :
            find_between(animated, i - 1, before, deformation, static_cast<int>(parts), steps)) {
         shares.push_back(deepest_share(animated, i - 1, contact, player));
@@ -250,8 +250,9 @@ void look_between_frames(AnimatedAsset& animated, Target target, std::size_t cli
   animated.put_between(between);
 }
 
-void look_between_frames(AnimatedAsset& animated, Target target, const std::function<void(int)>& told) {
-  for (std::size_t clip = 0; clip < animated.clips().size(); ++clip) look_between_frames(animated, target, clip, told);
+void look_between_frames(AnimatedAsset& animated, Target target, const std::function<void(int)>& progress) {
+  for (std::size_t clip = 0; clip < animated.clips().size(); ++clip)
+    look_between_frames(animated, target, clip, progress);
 }
 
 }  // namespace spherechain::baker

@@ -9,9 +9,9 @@
 
 namespace spherechain::baker {
 
-// What touches on the way from one deformation to the next. Joints turn as engines blend poses, down the skeleton;
-// whole meshes as poses, and what sheared bones move, go straight. The asset must have clusters, and `animated` must
-// outlive it.
+// Finds contacts on the way from one deformation to the next. Joints turn as engines blend poses, down the skeleton.
+// Whole meshes as poses, and skin on sheared bones, move straight. The asset must have clusters, and `animated` must
+// outlive this object.
 class StepPlayer {
  public:
   StepPlayer(const AnimatedAsset& animated, Target target);
@@ -33,10 +33,10 @@ class StepPlayer {
 };
 
 // Puts a frame between two of a clip's own wherever body parts touch on the way that touch in neither of them, about
-// where they are deepest in each other: MotionFrame::between. `told` is called with each frame.
+// where they are deepest in each other: MotionFrame::between. `progress` is called with each frame.
 void look_between_frames(AnimatedAsset& animated, Target target, std::size_t clip,
-                         const std::function<void(int)>& told);
-// Of all clips that play.
-void look_between_frames(AnimatedAsset& animated, Target target, const std::function<void(int)>& told);
+                         const std::function<void(int)>& progress);
+// Adds the contacts between frames, for all clips that play.
+void look_between_frames(AnimatedAsset& animated, Target target, const std::function<void(int)>& progress);
 
 }  // namespace spherechain::baker

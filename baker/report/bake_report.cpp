@@ -47,7 +47,7 @@ ordered_json closing_section(const ClosingReport& closing) {
   return out;
 }
 
-// What was done for a closed body, a line; nothing where it was one.
+// One line about the repair of a body that was not closed. Empty if it was closed.
 std::string closing_line(const ClosingReport& closing) {
   if (closing.body == BodySource::kSkin) return {};
   std::string line = fmt::format(

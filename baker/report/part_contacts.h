@@ -22,7 +22,7 @@ class PartContacts {
  public:
   // `animated` must outlive it.
   explicit PartContacts(const AnimatedAsset& animated)
-      : animated_(animated), mm_(mm_per_unit(animated.asset())), parts_(parts_of(animated.asset())) {}
+      : animated_(animated), mm_(mm_per_unit(animated.asset())), parts_(body_parts_of(animated.asset())) {}
 
   // Frames are added in order. Returns the frame's counts.
   PartCounts add(int frame, const std::vector<Pair>& triangles, const std::vector<Penetration>& penetrations);

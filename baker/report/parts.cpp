@@ -27,7 +27,7 @@ const char* side_name(Side side) {
 }  // namespace
 
 std::vector<PartRow> part_rows(const OpenAsset& asset) {
-  const BodyParts parts = parts_of(asset);
+  const BodyParts parts = body_parts_of(asset);
   std::vector<PartRow> out;
   for (const BodyPart& part : parts.parts) {
     const bool has_bone = part.bone >= 0;

@@ -19,7 +19,7 @@ struct PartRow {
   std::size_t triangles;
 };
 
-// Those of an asset.
+// The body parts of an asset.
 std::vector<PartRow> part_rows(const OpenAsset& asset);
 
 nlohmann::ordered_json parts_json(const std::vector<PartRow>& parts);

@@ -25,8 +25,8 @@ nlohmann::ordered_json skin_json(const Player& player, const Player::TriangleDet
 nlohmann::ordered_json penetrations_json(const AnimatedAsset& animated, const std::vector<Penetration>& penetrations,
                                          const PartContacts& contacts);
 
-// What `play --json` writes: the keys of `head`, then `frames`, then the keys of `tail`. It is written frame by
-// frame: all of them may not fit in memory.
+// Writer of `play --json`: the keys of `head`, then `frames`, then the keys of `tail`. Writes frame by frame, because
+// all frames may not fit in memory.
 class PlayFile {
  public:
   // The file is there after finish(), which comes after the last of `frames` frames, at least one. Throws Error(kFile),

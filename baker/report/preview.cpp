@@ -126,7 +126,7 @@ std::vector<Vec3> vertex_normals(const Mesh& mesh) {
   return normals;
 }
 
-struct Skin {
+struct PreviewSkin {
   Elements<float, 3> positions, normals, colours;
   Elements<std::uint16_t, 4> joints;
   Elements<float, 4> weights;
@@ -135,7 +135,7 @@ struct Skin {
 
 // A vertex between two regions is there once for each: colours end where the bake cut, and are not blended across.
 void append(const Mesh& mesh, const std::vector<std::uint8_t>& region_of_triangle,
-            const std::vector<VertexWeights>& weights, Skin& skin) {
+            const std::vector<VertexWeights>& weights, PreviewSkin& skin) {
   const std::vector<Vec3> normals = vertex_normals(mesh);
   std::map<std::pair<std::uint8_t, Index>, Index> vertex_of;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -172,7 +172,7 @@ std::vector<VertexWeights> weights_of(const std::vector<VertexWeights>& of_sourc
   return out;
 }
 
-int add_skin_mesh(tinygltf::Model& model, const Skin& skin, bool rigged) {
+int add_skin_mesh(tinygltf::Model& model, const PreviewSkin& skin, bool rigged) {
   std::map<std::string, int> attributes{{"POSITION", add_positions(model, skin.positions)},
                                         {"NORMAL", add_vertices(model, skin.normals)},
                                         {"COLOR_0", add_vertices(model, skin.colours)}};
@@ -184,7 +184,7 @@ int add_skin_mesh(tinygltf::Model& model, const Skin& skin, bool rigged) {
   return add_mesh(model, "skin", std::move(attributes), indices, add_material(model, "skin", 1, 0.5));
 }
 
-// Of radius 1 around 0: rings of vertices from pole to pole.
+// Adds a sphere of radius 1 around 0: rings of vertices from pole to pole.
 int add_sphere_mesh(tinygltf::Model& model) {
   constexpr Index kRings = 15, kSegments = 32, kLast = kRings * kSegments + 1;
   Elements<float, 3> vertices{{0, 1, 0}};
@@ -296,7 +296,7 @@ std::string preview_glb(const Bake& bake) {
   if (!bake.joints.empty()) {
     weights = weights_of(rig_weights(character, bake.joints), character.skin_of_source, character.skin);
   }
-  Skin skin;
+  PreviewSkin skin;
   append(character.skin, bake.regions.of_skin, weights, skin);
 
   tinygltf::Model model;

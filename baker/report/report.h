@@ -9,8 +9,8 @@
 
 namespace spherechain::baker {
 
-// What the bake did and reached, as JSON: import counts, how left and right were decided, every torso sphere's three
-// fits with F at every vertex, pivots, radii, both readings of the paper's numbers, time of each stage, peak memory,
+// The bake's steps and results as JSON: import counts, how left and right were decided, every torso sphere's three fits
+// with F at every vertex, pivots, radii, both readings of the paper's numbers, time of each stage, peak memory,
 // targets.
 std::string bake_report_json(const Bake& bake);
 
@@ -20,8 +20,8 @@ std::string bake_report_text(const Bake& bake);
 // The last line of a bake: the grade of the fit, the parts that it fits badly, and those by the generic fit.
 std::string fit_line(const Bake& bake);
 
-// What a length that no such body has says about its file's unit; empty where it may have it. `parts` are the names of
-// its body parts: a dragon may be longer than a person, and toys are small.
+// A note on the file's unit if no such body has this length; else empty. `parts` are the names of its body parts: a
+// dragon may be longer than a person, and toys are small.
 std::string unit_note(double metres, const std::vector<std::string>& parts);
 std::string unit_note(const Bake& bake);
 
@@ -35,7 +35,7 @@ std::string inspect_text(const OpenAsset& asset);
 // "paper", "calibrated" or "moments".
 const char* refit_name(spherechain::RefitRule rule);
 
-// What each node of a rig is on the body and why, for people and as JSON.
+// The role of each node of a rig and the reason for it, as text and as JSON.
 std::string roles_text(const SourceRig& rig, const Roles& roles);
 std::string roles_json(const SourceRig& rig, const Roles& roles);
 

@@ -19,7 +19,7 @@ constexpr std::size_t kWorstMisses = 20;
 
 const char* radius_name(Radius radius) { return radius == SC_RADIUS_FIT ? "fit" : "detect"; }
 
-// What the figures without a name of their own are of.
+// The subject of the figures that have no name of their own.
 const char* reported_name(const ValidateSettings& settings) {
   return settings.skin ? "skin" : "all_pairs";
 }

@@ -53,7 +53,7 @@ std::vector<Vec3> vertex_normals(const Mesh& mesh) {
   return normals;
 }
 
-// What pulls a vertex: H, and the joints among which it is shared.
+// A heat source of a vertex: the strength H, and the joints that share it.
 struct Source {
   double heat;
   std::vector<Index> joints;

@@ -19,7 +19,7 @@ bool is_open(Word word) {
 }
 bool is_girdle_or_upper(Word word) { return word == Word::kShoulder || word == Word::kHip; }
 
-// Of an open word the highest it can be.
+// The highest rank that an ambiguous word can have.
 int rank_of(Word word) {
   switch (word) {
     case Word::kClavicle:
@@ -114,7 +114,7 @@ std::vector<Rank> resolve(const Skeleton& s, const std::vector<Hint>& hints, con
       upper = open[short_start ? 1 : first];
     }
   }
-  // What comes after each node on the way.
+  // For each node, tells if a hand or an upper bone follows it on the path.
   std::vector<bool> hand_follows(n, false), upper_follows(n, false);
   bool hand = false, upper_by_word = false, open_before_lower = false;
   for (std::size_t i = n; i-- > 0;) {

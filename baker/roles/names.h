@@ -53,7 +53,7 @@ struct Hint {
   std::string reason;
 };
 
-// What each of a rig's names says. Some tell sides only beside others: "bras_g" and "bras_d".
+// The hint that each of a rig's names gives. Some names tell sides only beside others: "bras_g" and "bras_d".
 std::vector<Hint> read_names(const std::vector<std::string>& names);
 
 // The hint for a role of a role file. Its word is kNone and its reason empty where there is no such role.

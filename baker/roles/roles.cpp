@@ -39,7 +39,7 @@ const char* plain_role(Word word) {
   }
 }
 
-// What the file itself calls a node on the body goes before its name.
+// A humanoid mapping in the file goes before the node's name.
 std::vector<Hint> hints_from_names(const SourceRig& rig) {
   std::vector<std::string> names;
   for (const Node& node : rig.nodes) names.push_back(node.humanoid_bone.empty() ? node.name : node.humanoid_bone);
@@ -215,7 +215,7 @@ struct RoleWriter {
 
   void find_tail(double trunk) {
     int top = find_in_middle(s, hints, body.path_of, Word::kTail);
-    // What hangs on the head is hair.
+    // Nodes that hang on the head are hair.
     if (top >= 0 && body.head >= 0 && s.common_ancestor(top, body.head) == body.head) top = -1;
     const bool by_shape = top < 0 && !body.paths.empty() && hints[body.paths[0].nodes[0]].reason == kByShape;
     if (by_shape && body.pelvis >= 0) {
@@ -251,7 +251,7 @@ struct RoleWriter {
     }
   }
 
-  // What is left: by its word, else by what it hangs on.
+  // Remaining nodes get a role by their word, or else by the node above.
   void add_rest() {
     const std::vector<int> in_head = s.inherited([&](int n) { return n == body.head ? 1 : -1; });
     add_joint_parts(in_head);

@@ -12,13 +12,13 @@ namespace spherechain::baker {
 enum class BodyKind { kUnknown, kBiped, kQuadruped, kOther };
 const char* body_kind_name(BodyKind kind);
 
-// What a node of a rig is on the body. Roles are named as the joints of the automatic rig:
+// The role of a rig's node on the body. Roles are named as the joints of the automatic rig:
 // - pelvis, spine, chest, neck, head,
 // - with left_ or right_ before: clavicle, shoulder (of the upper arm), elbow, wrist, finger, hip (of the thigh), knee,
 //   ankle, toe; a quadruped's forelegs count as arms,
 // - tail_1 ..., limb (a joint of a limb that is neither arm nor leg), twist (part of a limb, follows its joints), eye,
 //   jaw, hair, head_part, attachment, control (moves other nodes, not the skin), root, other.
-// Of the first two lists a body has one node each, but any number of spine, neck, finger and toe.
+// A body has one node for each role of the first two lists, but any number of spine, neck, finger and toe.
 struct NodeRole {
   std::string role;
   int limb = -1;       // index in Roles::limbs; -1 for trunk, head and clavicles

@@ -107,7 +107,7 @@ std::vector<Hint> hints_from_shape(const Skeleton& s) {
   const std::optional<Plane> plane = find_symmetry(s);
   if (!plane) return hints;
 
-  // What a node and all under it are to the plane.
+  // Signed and absolute distances from the plane, each summed over a node and all nodes under it.
   std::vector<double> sum(hints.size(), 0), sum_abs(hints.size(), 0), count(hints.size(), 0);
   std::vector<bool> lateral(hints.size(), false);
   for (int n = s.count(); n-- > 0;) {

@@ -10,8 +10,8 @@ namespace spherechain::baker {
 
 // All words are folded (letters.h), parts joined: "upperarm".
 
-// What a word says, kNone where it is unknown. A few short words speak of the body only beside a side: "main" is French
-// for a hand.
+// The meaning of a word, kNone if it is unknown. A few short words count only beside a side: "main" is French for a
+// hand.
 Word word_of(const std::u32string& word, bool beside_side);
 
 NamedSide side_of(const std::u32string& word);

@@ -65,14 +65,15 @@ Side side_of(const Part& part, const Roles& roles) {
 }
 
 std::string name_of(const Part& part, const SourceRig& rig, std::set<std::string>& taken) {
-  const std::string wish = part.node == Part::kNone ? "part" : rig.nodes[static_cast<std::size_t>(part.node)].name;
-  std::string name = wish.empty() ? "part" : wish;
-  for (int i = 2; !taken.insert(name).second; ++i) name = (wish.empty() ? "part" : wish) + "_" + std::to_string(i);
+  const std::string preferred = part.node == Part::kNone ? "part" : rig.nodes[static_cast<std::size_t>(part.node)].name;
+  std::string name = preferred.empty() ? "part" : preferred;
+  for (int i = 2; !taken.insert(name).second; ++i)
+    name = (preferred.empty() ? "part" : preferred) + "_" + std::to_string(i);
   return name;
 }
 
 BodyFrame frame_of(const Character& character, const std::vector<Part>& parts, const Roles& roles,
-                   const std::optional<Vec3>& wish, std::string& facing) {
+                   const std::optional<Vec3>& forward, std::string& facing) {
   Vec3 left = Vec3::Zero();
   for (const Part& part : parts) {
     const Side side = side_of(part, roles);
@@ -88,7 +89,8 @@ BodyFrame frame_of(const Character& character, const std::vector<Part>& parts, c
     left = std::abs(up.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
     left -= left.dot(up) * up;
   }
-  if (const Vec3 across = up.cross(wish.value_or(Vec3::Zero())); across.norm() > 1e-6 * wish.value_or(up).norm()) {
+  if (const Vec3 across = up.cross(forward.value_or(Vec3::Zero()));
+      across.norm() > 1e-6 * forward.value_or(up).norm()) {
     left = across;
     facing = "forward is the direction in the settings";
   }
@@ -200,7 +202,7 @@ int nearest_entry(const Mesh& skin, const std::vector<Entry>& entries, std::size
 Regions segment_by_bones(Character& character, const Roles& roles, const std::optional<Vec3>& facing,
                          std::size_t spheres) {
   take_all_pieces(character);
-  const std::vector<Part> parts = parts_of(character, spheres, {});
+  const std::vector<Part> parts = build_part_tree(character, spheres, {});
   Regions regions;
   regions.provider = "bones";
   regions.frame = frame_of(character, parts, roles, facing, regions.facing);
@@ -229,7 +231,7 @@ MixedRegions segment_rest_by_bones(Character& character, const Regions& found, c
     out.kept.push_back(region);
   }
   const std::size_t first = entries.size();
-  add_parts(character, roles, parts_of(character, spheres, left_out), taken, entries);
+  add_parts(character, roles, build_part_tree(character, spheres, left_out), taken, entries);
   out.kept.resize(entries.size(), MixedRegions::kNone);
   if (kept[torso]) {
     const auto root = static_cast<int>(entries.size());

@@ -60,7 +60,7 @@ std::uint8_t nearest_label(const Character& character, const SurfaceQuery& surfa
   return body[best];
 }
 
-// Of each region's islands on a piece of the skin those small against the largest join the region they border on most.
+// On each piece of the skin, a region's small islands join the region with the longest common border.
 void join_small_islands(const Mesh& skin, std::vector<std::uint8_t>& labels) {
   constexpr double kSmall = 0.25;
   const Components pieces = connected_components(skin);

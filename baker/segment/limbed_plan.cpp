@@ -13,10 +13,10 @@
 namespace spherechain::baker {
 namespace {
 
-// Of the tree's longest path: shorter branches are ears, horns, toes.
+// Share of the tree's longest path: shorter branches are ears, horns, toes.
 constexpr double kLimbLengthMin = 0.1;
-// Of the mesh's diameter: how far a limb's mirrored tip may be from its mate's in an uneven pose, and a tail's from
-// itself; how much worse than the best a plane of symmetry may be.
+// Shares of the mesh's diameter. How far a limb's mirrored tip may be from its mate's in an uneven pose, and a tail's
+// from itself; how much worse than the best a plane of symmetry may be.
 constexpr double kUneven = 0.2, kAsAlike = 0.01;
 // Parts of the trunk's length from which neck and tail are limbs: those of the roles of joints.
 constexpr double kLongNeck = 0.75, kLongTail = 0.25;

@@ -114,7 +114,7 @@ class PartTree {
     of_node.erase(kNone);
 
     const std::vector<Node>& rig = character.rig.nodes;
-    // Of each node the nearest one above that has a part.
+    // For each node, finds the nearest ancestor that has a part.
     const auto find_above = [&] {
       std::vector<int> out(rig.size(), kNone);
       for (std::size_t n = 0; n < rig.size(); ++n) {
@@ -252,7 +252,7 @@ class PartTree {
 
 }  // namespace
 
-std::vector<Part> parts_of(const Character& character, std::size_t spheres, const std::vector<bool>& left_out) {
+std::vector<Part> build_part_tree(const Character& character, std::size_t spheres, const std::vector<bool>& left_out) {
   constexpr double kShare = 0.3;       // of a sphere's even share of the area
   constexpr double kSmallest = 0.005;  // of the area: regions are numbered in a byte
   const double area = surface_area(character.skin);

@@ -25,7 +25,7 @@ std::vector<int> heaviest_nodes(const Character& character);
 // its own. A part too small for its share of `spheres` joins the nearest part above it in the rig. The root is the
 // last, and its own parent. Triangles in `left_out` (one entry for each of the skin, or none) are in no part; at least
 // one is left.
-std::vector<Part> parts_of(const Character& character, std::size_t spheres, const std::vector<bool>& left_out);
+std::vector<Part> build_part_tree(const Character& character, std::size_t spheres, const std::vector<bool>& left_out);
 
 // Where the area of triangles lies: its centroid, and how far it spreads along its principal axes, the longest first.
 struct Extent {

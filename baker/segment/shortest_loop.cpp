@@ -52,7 +52,7 @@ void shorten_loop(const Mesh& mesh, const std::vector<std::array<Index, 3>>& nei
     }
   }
   boost::boykov_kolmogorov_max_flow(graph, source, sink);
-  // What the source still reaches is the smallest of all minimum cuts' inner sides.
+  // The vertices that the source still reaches are the smallest inner side of all minimum cuts.
   const auto residual = boost::get(boost::edge_residual_capacity, graph);
   std::vector<bool> reached(strip.size() + 2, false);
   std::vector<std::size_t> stack{source};

@@ -24,7 +24,7 @@ struct ContactsFromBones {
 ContactsFromBones find_contacts_from_bones(const OpenAsset& asset, const Character& character,
                                            const Deformation& deformation, Target target);
 
-// What two sorted lists do not have in common.
+// Differences of two sorted lists.
 struct ContactErrors {
   std::size_t missing = 0;  // true, not found
   std::size_t extra = 0;    // found, not true

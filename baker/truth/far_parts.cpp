@@ -6,7 +6,7 @@
 namespace spherechain::baker {
 
 FarParts::FarParts(const AnimatedAsset& animated, const TruthSurface& surface, double close) {
-  const BodyParts parts = parts_of(animated.asset());
+  const BodyParts parts = body_parts_of(animated.asset());
   part_of_ = parts.of_triangle;
   const std::size_t count = parts.parts.size();
   far_.assign(256, std::vector<bool>(256, false));  // a triangle without a part is far from nothing

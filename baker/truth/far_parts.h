@@ -15,7 +15,7 @@ class FarParts {
  public:
   FarParts(const AnimatedAsset& animated, const TruthSurface& surface, double close);
 
-  // Of two source triangles.
+  // `triangles` are two source triangles.
   bool operator()(const Pair& triangles) const { return far_[part_of_[triangles.a]][part_of_[triangles.b]]; }
 
  private:

@@ -11,7 +11,7 @@
 namespace spherechain::baker {
 namespace {
 
-using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, Index>;
+using TriangleBox = CGAL::Box_intersection_d::Box_with_info_d<double, 3, Index>;
 
 template <typename Kernel>
 typename Kernel::Triangle_3 triangle_at(const TruthSurface& surface, const std::vector<float>& positions, Index place) {
@@ -34,11 +34,11 @@ bool is_point(const Triangle& t) {
   return extent <= 0x1p-20 * most;
 }
 
-// Those without area, and points, have no box: they intersect nothing.
+// Triangles without area, and points, have no box: they intersect nothing.
 struct ExactTriangles {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   std::vector<Kernel::Triangle_3> triangles;
-  std::vector<Box> boxes;
+  std::vector<TriangleBox> boxes;
 
   ExactTriangles(const TruthSurface& surface, const std::vector<float>& positions) {
     triangles.reserve(surface.corners.size());
@@ -56,7 +56,7 @@ Intersections find_intersections(const TruthSurface& surface, const std::vector<
   Intersections out;
   ExactTriangles body(surface, positions);
   out.degenerate = surface.corners.size() - body.boxes.size();
-  const auto meet = [&](const Box& l, const Box& r) {
+  const auto meet = [&](const TriangleBox& l, const TriangleBox& r) {
     const Index a = std::min(l.info(), r.info()), b = std::max(l.info(), r.info());
     if (are_neighbours(surface.welded[a], surface.welded[b])) return;
     if (!CGAL::do_intersect(body.triangles[a], body.triangles[b])) return;
@@ -72,7 +72,7 @@ std::vector<Pair> find_intersections(const TruthSurface& a, const std::vector<fl
   std::vector<Pair> out;
   ExactTriangles of_a(a, positions_a), of_b(b, positions_b);
   CGAL::box_intersection_d(of_a.boxes.begin(), of_a.boxes.end(), of_b.boxes.begin(), of_b.boxes.end(),
-                           [&](const Box& l, const Box& r) {
+                           [&](const TriangleBox& l, const TriangleBox& r) {
                              if (CGAL::do_intersect(of_a.triangles[l.info()], of_b.triangles[r.info()])) {
                                out.push_back({a.source_triangle[l.info()], b.source_triangle[r.info()]});
                              }
@@ -85,7 +85,7 @@ std::set<Pair> close_owners(const TruthSurface& surface, const std::vector<float
                             const std::vector<std::uint32_t>& owner, double distance) {
   using Kernel = CGAL::Simple_cartesian<double>;
   std::vector<Kernel::Triangle_3> triangles;
-  std::vector<Box> boxes;
+  std::vector<TriangleBox> boxes;
   for (Index i = 0; i < surface.corners.size(); ++i) {
     triangles.push_back(triangle_at<Kernel>(surface, positions, i));
     const CGAL::Bbox_3 box = triangles[i].bbox();
@@ -95,7 +95,7 @@ std::set<Pair> close_owners(const TruthSurface& surface, const std::vector<float
                        i);
   }
   std::set<Pair> out;
-  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& l, const Box& r) {
+  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const TriangleBox& l, const TriangleBox& r) {
     const auto [a, b] = std::minmax(owner[l.info()], owner[r.info()]);
     if (a == b || out.count({a, b}) > 0) return;
     if (CGAL::squared_distance(triangles[l.info()], triangles[r.info()]) < distance * distance) out.insert({a, b});

@@ -16,20 +16,20 @@ MissedDepth::MissedDepth(const std::vector<std::uint8_t>& part_of, const FrameTr
   }
   for (const TrueContact& contact : truth.contacts) {
     if (!std::binary_search(reported.begin(), reported.end(), contact.spheres)) continue;
-    for (const Pair& triangles : contact.triangles) depths_.erase(parts_of(triangles));
+    for (const Pair& triangles : contact.triangles) depths_.erase(part_pair_of(triangles));
   }
 }
 
 double MissedDepth::operator()(const TrueContact& contact) const {
   double deepest = 0;
   for (const Pair& triangles : contact.triangles) {
-    const auto found = depths_.find(parts_of(triangles));
+    const auto found = depths_.find(part_pair_of(triangles));
     if (found != depths_.end()) deepest = std::max(deepest, found->second);
   }
   return deepest;
 }
 
-Pair MissedDepth::parts_of(const Pair& triangles) const {
+Pair MissedDepth::part_pair_of(const Pair& triangles) const {
   const auto [a, b] = std::minmax(part_of_[triangles.a], part_of_[triangles.b]);
   return {a, b};
 }

@@ -18,11 +18,11 @@ class MissedDepth {
   MissedDepth(const std::vector<std::uint8_t>& part_of, const FrameTruth& truth, const std::vector<Pair>& reported,
               const std::vector<Penetration>& penetrations);
 
-  // Of a contact: the source's units; 0 where it belongs to no such fault.
+  // Depth of a contact's fault in the source's units. 0 if it belongs to no missed fault.
   double operator()(const TrueContact& contact) const;
 
  private:
-  Pair parts_of(const Pair& triangles) const;
+  Pair part_pair_of(const Pair& triangles) const;
 
   const std::vector<std::uint8_t>& part_of_;
   std::map<Pair, double> depths_;  // of two parts

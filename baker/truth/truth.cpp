@@ -6,9 +6,9 @@
 
 namespace spherechain::baker {
 
-FrameTruth judge(const Intersections& found, const std::vector<Pair>& rest_pairs, const TruthSurface& surface,
-                 const std::function<bool(std::uint32_t, std::uint32_t)>& is_ignored,
-                 const std::function<bool(const Pair&)>& is_far) {
+FrameTruth frame_truth(const Intersections& found, const std::vector<Pair>& rest_pairs, const TruthSurface& surface,
+                       const std::function<bool(std::uint32_t, std::uint32_t)>& is_ignored,
+                       const std::function<bool(const Pair&)>& is_far) {
   FrameTruth out;
   out.raw_pairs = found.pairs.size();
   out.degenerate = found.degenerate;

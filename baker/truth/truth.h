@@ -15,7 +15,7 @@ struct TrueContact {
   std::vector<Pair> triangles;
 };
 
-// What intersects in a frame. Out of scope are, in this order and each pair once, those that intersect in the rest pose
+// Intersections of a frame. Out of scope are, in this order and each pair once: those that intersect in the rest pose
 // too, those within one sphere's region, and those of spheres whose pair the asset ignores.
 struct FrameTruth {
   std::size_t raw_pairs = 0;
@@ -29,8 +29,8 @@ struct FrameTruth {
 
 // `rest_pairs`: those of the rest pose, sorted. `is_ignored` is asked about two owners of the surface's triangles,
 // `is_far` about two source triangles.
-FrameTruth judge(const Intersections& found, const std::vector<Pair>& rest_pairs, const TruthSurface& surface,
-                 const std::function<bool(std::uint32_t, std::uint32_t)>& is_ignored,
-                 const std::function<bool(const Pair&)>& is_far);
+FrameTruth frame_truth(const Intersections& found, const std::vector<Pair>& rest_pairs, const TruthSurface& surface,
+                       const std::function<bool(std::uint32_t, std::uint32_t)>& is_ignored,
+                       const std::function<bool(const Pair&)>& is_far);
 
 }  // namespace spherechain::baker

@@ -28,7 +28,7 @@ struct Frame {
   std::optional<ContactErrors> contacts_from_bones, neighbour_contacts_from_bones;
 };
 
-// What all frames share.
+// Data that all frames share.
 struct Context {
   const AnimatedAsset& animated;
   const ValidateSettings& settings;
@@ -38,7 +38,7 @@ struct Context {
   std::vector<Pair> rest_pairs = intersections.find(rest).pairs;
   double close = kCloseSurface * animated.frame().height;
   FarParts is_far{animated, surface, close};
-  BodyParts parts = parts_of(animated.asset());
+  BodyParts parts = body_parts_of(animated.asset());
   std::set<Pair> close_spheres = close_owners(surface, rest, surface.sphere, close);  // at rest
 };
 
@@ -68,7 +68,7 @@ Frame validate_frame(const Context& context, int index, const std::function<void
 
   Frame frame;
   const auto ignored = [&](std::uint32_t a, std::uint32_t b) { return is_ignored(animated.asset(), a, b); };
-  frame.truth = judge(found, context.rest_pairs, surface, ignored, context.is_far);
+  frame.truth = frame_truth(found, context.rest_pairs, surface, ignored, context.is_far);
   Player player(animated.asset(), settings.radius, settings.target);
   player.run(positions);
   const std::vector<Pair> all_pairs{player.pairs().begin(), player.pairs().end()};
@@ -96,8 +96,8 @@ Frame validate_frame(const Context& context, int index, const std::function<void
       // Exact contacts of these very positions, which differ from the baker's by rounding.
       const ContactsFromBones of_bones =
           find_contacts_from_bones(animated.asset(), animated.character(), deformation, settings.target);
-      const FrameTruth truth =
-          judge(context.intersections.find(of_bones.positions), context.rest_pairs, surface, ignored, context.is_far);
+      const FrameTruth truth = frame_truth(context.intersections.find(of_bones.positions), context.rest_pairs, surface,
+                                           ignored, context.is_far);
       frame.contacts_from_bones = compare(of_bones.pairs, truth.pairs);
       frame.neighbour_contacts_from_bones = compare(of_bones.neighbours, truth.neighbours);
     }

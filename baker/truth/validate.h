@@ -32,7 +32,7 @@ struct Miss {
   int frame;
   Pair spheres;
   std::size_t triangle_pairs;
-  // Of the two body parts, where no report is of the same two: a fault that is not seen at all. Else 0, as of what is
+  // Depth of the two body parts if no report names them: a fault that is missed entirely. Else 0, as for pairs that are
   // no fault. Mesh units.
   double depth;
 };

@@ -48,7 +48,7 @@ Colliders find_bodies(const OpenAsset& asset) {
   out.left = vec3_of(info.left).normalized();
   out.up = (vec3_of(info.up) - vec3_of(info.up).dot(out.left) * out.left).normalized();
   out.forward = out.left.cross(out.up);
-  const BodyParts parts = parts_of(asset);
+  const BodyParts parts = body_parts_of(asset);
   const std::vector<int> order = parents_first(parts.parts);
   std::vector<int> body_of_part(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) body_of_part[static_cast<std::size_t>(order[i])] = static_cast<int>(i);

@@ -11,7 +11,7 @@ namespace spherechain::baker {
 // The asset's body parts as bodies without volumes, parents first.
 Colliders find_bodies(const OpenAsset& asset);
 
-// Of each of the asset's body parts: its body.
+// For each of the asset's body parts, the index of its body.
 std::vector<int> body_of_parts(const OpenAsset& asset, const Colliders& colliders);
 
 // Where the bodies stand at rest.
@@ -28,7 +28,7 @@ struct SkinSample {
   int body;  // that it belongs to
 };
 
-// Of the skin's vertices there; evenly, about `count` points a body.
+// Samples the skin's vertices evenly, about `count` points a body.
 std::vector<SkinSample> sample_skin(const OpenAsset& asset, const Colliders& colliders,
                                     const std::vector<Vec3>& positions, int count);
 

@@ -17,7 +17,7 @@ struct BodySample {
   double area;
 };
 
-// What a body's volumes are fitted to.
+// The skin that one body's volumes are fitted to.
 struct BodySkin {
   std::vector<BodySample> samples;
   // How far volumes may reach along each of a number of directions (reach_directions): a part's skin is open where the

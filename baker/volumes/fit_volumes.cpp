@@ -21,8 +21,8 @@ constexpr double kBend = 0.8;      // how far a point goes when its joint turns 
 constexpr double kLimb = 0.75;     // what hangs on a joint that bends: this power of the number of bodies
 constexpr double kAlike = 0.5;     // of what it costs: a merge that was done on the other side
 
-// What a body's volumes may reach along each direction: as far as its own samples and half their thickness more, where
-// those of the bodies that it hangs together with reach that far.
+// How far a body's volumes may reach along each direction: to its own samples, and up to half their thickness beyond
+// if samples of connected bodies reach that far.
 std::vector<double> reach_of(const std::vector<BodySample>& own, const std::vector<Vec3>& beside) {
   std::vector<double> out;
   for (const Vec3& direction : reach_directions()) {
@@ -155,8 +155,8 @@ class VolumeSets {
     return static_cast<std::size_t>(at);
   }
 
-  // What a body's skin adds to the gap when its joint bends and the volumes of another body stand for it. The middle of
-  // a limb counts more than its end, because all that hangs on it leaves the limb's volumes, too. So neck, shoulders,
+  // The gap that a body's skin adds when its joint bends and the volumes of another body replace it. The middle of a
+  // limb counts more than its end, because all that hangs on it leaves the limb's volumes, too. So neck, shoulders,
   // hands and feet go before heads and arms.
   double bend_of(std::size_t i, std::size_t holder) const {
     const int bone = colliders_.bodies[i].bone_index;

@@ -61,7 +61,7 @@ double union_volume(const std::vector<PlacedVolume>& volumes) {
   return static_cast<double>(std::count(is_in.begin(), is_in.end(), true)) * cell * cell * cell;
 }
 
-// Of the rest pose by its triangles' signed cones to a point: of the pieces that are closed exact, of open ones nearly.
+// Volume at rest by the signed cones from triangles to a point: exact for closed pieces, approximate for open ones.
 double enclosed_volume(const std::vector<SkinSample>& skin) {
   double out = 0;
   for (const SkinSample& sample : skin) out += sample.area * sample.normal.dot(sample.point - skin.front().point) / 3;

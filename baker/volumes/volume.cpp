@@ -120,8 +120,8 @@ Volume moved(const Volume& volume, const Eigen::AffineCompact3d& by) {
 }
 
 Volume padded(const Volume& volume, double by) {
-  constexpr double kLeast = 1e-4;
-  const auto longer = [&](double length) { return std::max(length + by, kLeast); };
+  constexpr double kLengthMin = 1e-4;
+  const auto longer = [&](double length) { return std::max(length + by, kLengthMin); };
   Volume out = volume;
   if (auto* ball = std::get_if<BallVolume>(&out)) {
     ball->radius = longer(ball->radius);

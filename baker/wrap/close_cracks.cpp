@@ -43,7 +43,7 @@ class Grid {
 
   void add(const Vec3& p, Index id) { cubes_[key(cube(p))].push_back(id); }
 
-  // What is within a cell's size of `p`, and some more.
+  // Visits everything within a cell's size of `p`, and some more.
   template <typename Visit>
   void around(const Vec3& p, const Visit& visit) const {
     const std::array<std::int64_t, 3> middle = cube(p);

@@ -8,28 +8,28 @@
 
 namespace spherechain::baker {
 
-// What the body is made of.
+// The source of the body.
 enum class BodySource : std::uint8_t {
   kSkin,      // the skin's largest piece, or all of its pieces, as they are
   kRepaired,  // the largest piece, made closed: welded, split, turned, its holes closed
   kWrapped,   // an alpha wrap around the skin
 };
 
-// What was found and done for a closed body; all of it goes into the bake report.
+// Findings and repairs for a closed body, for the bake report.
 struct ClosingReport {
   BodySource body = BodySource::kSkin;
-  // Of the repair: what was wrong with the skin.
+  // Repair: defects of the skin.
   std::size_t welded = 0;       // border vertices that all but coincided
   std::size_t t_junctions = 0;  // vertices that an edge was split at
   std::size_t turned = 0;       // triangles that faced the other way than those around them
   std::size_t parted = 0;       // edges of more than two triangles
   std::size_t holes = 0;
-  // Of the wrap that is the body. Lengths are fractions of the skin's diameter.
+  // The wrap that became the body. Lengths are fractions of the skin's diameter.
   double alpha = 0, offset = 0;
   double thin = 0;           // Wrap::thin
   bool holes_first = false;  // WrapSize::holes_first
   std::size_t triangles = 0;
-  // Of all that was tried.
+  // Totals of all tries.
   int wraps = 0;
   double seconds = 0;  // repair and wraps
 };

@@ -29,7 +29,7 @@ bool covers_skin(const Character& character) {
 }
 
 double crack_width(const Mesh& skin) {
-  // Of the diameter: what single precision and exporters' rounding leave between vertices that were one.
+  // Share of the diameter: rounding by exporters and single precision separates equal vertices by less.
   constexpr double kCrack = 1e-4;
   return kCrack * diameter(skin);
 }

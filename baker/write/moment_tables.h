@@ -13,7 +13,7 @@ namespace spherechain::baker {
 std::vector<flatbuffers::Offset<schema::Bone>> create_bones(flatbuffers::FlatBufferBuilder& builder,
                                                             const BoneBinding& bones);
 
-// None where there are no batches.
+// Null if there are no batches.
 flatbuffers::Offset<schema::Moments> create_moments(flatbuffers::FlatBufferBuilder& builder,
                                                     const MomentBinding& moments);
 

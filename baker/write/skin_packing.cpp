@@ -34,7 +34,7 @@ struct EightBalls {
 struct EightBoxes {
   std::array<Eight, 7> values{};
 
-  void set(std::size_t lane, const Box& box) {
+  void set(std::size_t lane, const ClusterBox& box) {
     for (std::size_t i = 0; i < 3; ++i) {
       const auto axis = static_cast<Eigen::Index>(i);
       values[i][lane] = static_cast<float>(box.center[axis]);
@@ -52,7 +52,7 @@ struct EightWeights {
   Eight weights{}, deviations{};
 };
 
-// What bounds eight clusters, one after another.
+// Bounds of groups of eight successive clusters.
 struct Groups {
   std::vector<schema::BoxLanes> boxes;
   std::vector<std::uint32_t> term_counts, term_bones, morph_counts, morph_targets;

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr int kDeadly[] = {SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 
-// What the handler deletes: it may call no more than unlink, and read no more than this.
+// The file that the signal handler deletes. The handler may only call unlink and read these two.
 std::array<char, PATH_MAX> doomed;
 std::atomic<bool> is_doomed = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
@@ -34,7 +34,7 @@ void delete_and_end(int signal) {
   ::raise(signal);
 }
 
-// What a program ignores (nohup) or handles stays as it is.
+// Signals that the program ignores (nohup) or handles keep their handlers.
 void handle_signals() {
   for (const int signal : kDeadly) {
     struct sigaction known {};

@@ -34,16 +34,16 @@ fs::path written_file(const fs::path& path) {
   const auto fail = [&] {
     throw Error(ExitCode::kFile, path.string() + ": cannot be created (" + std::strerror(errno) + ")");
   };
-  // What the system would not follow (a ring of links, a stranger's in /tmp) is not followed here.
+  // Links that the system would not follow (a ring of links, a stranger's in /tmp) are not followed here.
   struct ::stat there {};
   if (::stat(path.c_str(), &there) != 0 && errno != ENOENT) fail();
-  constexpr int kMostLinks = 40;  // the system's own; those to nothing it has not counted
+  constexpr int kLinksMax = 40;  // the system's own; those to nothing it has not counted
   fs::path file = path;
   for (int links = 0; !names_descriptor(file); ++links) {
     std::error_code error;
     const fs::path target = fs::read_symlink(file, error);
     if (error) break;  // the end: no link
-    if (links == kMostLinks) {
+    if (links == kLinksMax) {
       errno = ELOOP;
       fail();
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `spherechain validate` with more scores: of a ragdoll of capsules, of spheres with other radii and rest distances, and
-// of a test along the chains alone. Takes validate's options, and writes its JSON with the keys chains, capsules,
+// `spherechain validate` with more scores: of a ragdoll of capsules, of spheres with other radii and rest distances,
+// and of a test along the chains alone. Takes validate's options, and writes its JSON with the keys chains, capsules,
 // radius_curve and rest_curve.
 #include <fmt/format.h>
 
@@ -109,7 +109,7 @@ class Study {
     const auto is_close = [&](const Pair& pair) { return closeness(pair); };
     const auto is_apart = [&](const Pair& pair) { return close_capsules_.count(pair) == 0; };
     const FrameTruth shared = any.by_capsules(frame.truth),
-                     own = judge(
+                     own = frame_truth(
                          frame.found, frame.rest_pairs, any.surface(),
                          [&](std::uint32_t a, std::uint32_t b) { return any.is_ignored(a, b); }, frame.is_far);
     std::vector<CapsulePoint> points;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the paper says, judged by the run's tables and nothing else.
+// Checks the paper's claims by the run's tables and nothing else.
 #pragma once
 
 #include <string>

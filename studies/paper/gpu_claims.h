@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the paper says of the GPU, judged by figure16_medians.csv.
+// Checks the paper's claims about the GPU by figure16_medians.csv.
 #pragma once
 
 #include "claims.h"

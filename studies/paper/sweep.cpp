@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What each setting costs and brings, over a range of it.
+// The cost and effect of each setting, over a range of it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "experiments.h"
-#include "refit_error.h"
 #include "play/player.h"
+#include "refit_error.h"
 #include "run_frames.h"
 #include "statistics.h"
 

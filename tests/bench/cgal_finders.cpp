@@ -8,7 +8,7 @@
 namespace spherechain::bench {
 namespace {
 
-using Box = CGAL::Box_intersection_d::Box_with_info_d<float, 3, std::uint32_t>;
+using TriangleBox = CGAL::Box_intersection_d::Box_with_info_d<float, 3, std::uint32_t>;
 
 class CgalFinder : public PairFinder {
  public:
@@ -22,10 +22,10 @@ class CgalFinder : public PairFinder {
       const Sphere& s = spheres[i];
       float low[] = {s.x - s.radius, s.y - s.radius, s.z - s.radius};
       float high[] = {s.x + s.radius, s.y + s.radius, s.z + s.radius};
-      boxes_[i] = Box(low, high, i);
+      boxes_[i] = TriangleBox(low, high, i);
     }
     list_.clear();
-    CGAL::box_self_intersection_d(boxes_.begin(), boxes_.end(), [this](const Box& l, const Box& r) {
+    CGAL::box_self_intersection_d(boxes_.begin(), boxes_.end(), [this](const TriangleBox& l, const TriangleBox& r) {
       if (!list_.is_ignored(l.info(), r.info())) {
         list_.add(l.info(), r.info());
       }
@@ -36,7 +36,7 @@ class CgalFinder : public PairFinder {
 
  private:
   PairList list_;
-  std::vector<Box> boxes_;
+  std::vector<TriangleBox> boxes_;
 };
 
 }  // namespace

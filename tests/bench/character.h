@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What everything is timed on: a baked character in real poses.
+// The character that everything is timed on: a baked character in real poses.
 #pragma once
 
 #include <memory>

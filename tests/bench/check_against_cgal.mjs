@@ -43,7 +43,7 @@ function spans(frames, loops) {
   }
   return new Set(out);
 }
-// Of events, those whose depth is under that share of the deepest frame's.
+// Events whose depth is below that share of the depth in the deepest frame.
 function shallow(events, frames, share) {
   return events.filter(({ parts: [a, b], class: kind, from, to, depth_mm: depth }) => {
     if (!faults.includes(kind)) return false;

@@ -12,7 +12,7 @@
 
 namespace spherechain::bench {
 
-// What all contestants get: one pose of the character.
+// Input of all contestants: one pose of the character.
 struct ContactPose {
   std::vector<float> positions;  // of the source's vertices, x y z after another
   Pose bones;                    // the bones that give these positions

@@ -52,7 +52,7 @@ void require(bool holds, const std::string& what) {
   }
 }
 
-// Of a timed job: makes no text unless it failed.
+// Check for timed jobs: makes no text unless the job failed.
 void check(Status status) {
   if (status != SC_OK) {
     throw std::runtime_error(std::string("a timed job: ") + sc_code_text(status.code));

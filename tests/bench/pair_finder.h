@@ -23,7 +23,7 @@ class PairFinder {
   virtual ~PairFinder() = default;
   // This is what is timed: from an array of spheres to an array of pairs, or of bits. Buffers are made before.
   virtual void find(const Sphere* spheres) = 0;
-  // Of the last find(), in any order.
+  // Pairs of the last find(), in any order.
   virtual std::vector<Pair> pairs() const = 0;
 
   const std::string name;

@@ -226,7 +226,7 @@ class Bench {
     }
     return out;
   }
-  // What a frame's contacts are, and how deep.
+  // Finds a frame's contacts and their depths.
   std::vector<Penetration> measure(const std::vector<float>& bones) {
     SkinContactJob find;
     find.asset = &human_.asset;

@@ -40,7 +40,7 @@ function write(values, array, type, componentType) {
   return gltf.accessors.push(accessor) - 1;
 }
 
-// Of two vertices' bones, the four that move the middle most.
+// The four of two vertices' bones that move the middle most.
 function middleOfWeights([jointsA, weightsA], [jointsB, weightsB]) {
   const sums = new Map();
   jointsA.forEach((joint, k) => sums.set(joint, (sums.get(joint) ?? 0) + weightsA[k] / 2));

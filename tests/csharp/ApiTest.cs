@@ -231,7 +231,7 @@ public static class ApiTest
             Check(pairs > 20 && faults > 5 && hasVolume && isHidden,
                   string.Format("{0} pairs, {1} faults, volumes {2}, hidden {3}", pairs, faults, hasVolume, isHidden));
 
-            // Of the same pose the way out stays, whatever it was.
+            // The way out of the same pose stays, whatever it was.
             body.SetPose(deepest, kColumns);
             Results<Penetration> kept = new Results<Penetration>();
             kept.CopyFrom(body.Penetrations());

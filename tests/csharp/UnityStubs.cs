@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What SelfCollision.cs uses of UnityEngine, written from its documentation: matrices are column-major, m01 is row 0 of column
+// The types of UnityEngine that SelfCollision.cs uses, written from its documentation: matrices are column-major, m01 is row 0 of column
 // 1. Bones are given by their world matrices; there is no scene.
 using System;
 using System.Collections.Generic;

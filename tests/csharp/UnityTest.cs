@@ -25,7 +25,7 @@ public static class UnityTest
         typeof(SelfCollision).GetMethod(method, BindingFlags.Instance | BindingFlags.NonPublic | BindingFlags.Public).Invoke(component, null);
     }
 
-    // What an importer makes of a matrix: X turned on both sides, lengths in its own unit. Written apart from Mirror.
+    // Turns a matrix as an importer does: X turned on both sides, lengths in its own unit. Written apart from Mirror.
     static Matrix4x4 Imported(Matrix4x4 m)
     {
         Matrix4x4 turn = new Matrix4x4 { m00 = -kUnit, m11 = kUnit, m22 = kUnit, m33 = 1 };

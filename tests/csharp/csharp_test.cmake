@@ -24,7 +24,7 @@ function(run output)
   set(${output} "${text}" PARENT_SCOPE)
 endfunction()
 
-# What the C compiler says of `headers`, sorted lines.
+# The C compiler's view of `headers`, sorted lines.
 function(layout_of headers output)
   run(program ${PYTHON} ${ROOT}/runtime/csharp/generate.py ${headers} --layout)
   file(WRITE ${WORK}/layout.c "${program}")
@@ -109,7 +109,7 @@ elseif(CASE STREQUAL drift)
       message(FATAL_ERROR "\"${line}\" is not seen in the layout, which differs by:${differ}")
     endif()
   endforeach()
-  # What generate.py does not know is an error.
+  # A type that generate.py does not know is an error.
   file(APPEND ${headers}/spherechain/body.h "\nunion sc_unknown { int a; };\n")
   execute_process(COMMAND ${PYTHON} ${ROOT}/runtime/csharp/generate.py ${headers} RESULT_VARIABLE result ERROR_VARIABLE error OUTPUT_QUIET)
   if(result EQUAL 0 OR NOT error MATCHES "what is this")

@@ -7,7 +7,7 @@
 #include "volumes/colliders.h"
 #include "volumes/volume_json.h"
 
-// What foreign engines are compared with. Positions in metres, rotations x y z w, in the axes of the rest pose.
+// Reference for other engines. Positions in metres, rotations x y z w, in the axes of the rest pose.
 namespace spherechain::test {
 
 inline nlohmann::ordered_json json_of(const baker::Colliders& colliders) {

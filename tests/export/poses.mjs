@@ -1,4 +1,4 @@
-// What our side says, and a loaded character in the same poses.
+// Our own results, and a loaded character in the same poses.
 import { execFileSync } from 'node:child_process';
 import * as THREE from 'three';
 

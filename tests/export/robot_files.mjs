@@ -77,7 +77,7 @@ const byName = items => ({ type: 'object', additionalProperties: items })
 const spheres = byName({ type: 'array', minItems: 1, items: { type: 'object', required: ['center', 'radius'], additionalProperties: false,
   properties: { center: { ...numbers, minItems: 3, maxItems: 3 }, radius: { type: 'number', exclusiveMinimum: 0 } } } })
 const object = properties => ({ type: 'object', required: Object.keys(properties), properties, additionalProperties: false })
-// What Isaac's page on XRDF 1.0 asks for, and what cuRobo's converter of it misses when it is not there.
+// Keys that Isaac's page on XRDF 1.0 requires, and keys whose absence cuRobo's converter reports.
 export const xrdfSchema = object({
   format: { const: 'xrdf' }, format_version: { const: 1 }, default_joint_positions: byName({ type: 'number' }),
   cspace: object({ joint_names: names, acceleration_limits: numbers, jerk_limits: numbers }), tool_frames: names,

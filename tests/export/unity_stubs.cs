@@ -152,7 +152,8 @@ namespace UnityEngine
 
     public static class Debug { public static void LogWarning(string text) { Console.Error.WriteLine(text); } }
 
-    // What Unity's can: public fields of [Serializable] classes, strings, numbers, and arrays of those, none of arrays.
+    // Serializes as Unity does: public fields of [Serializable] classes, strings, numbers, arrays of those, no nested
+    // arrays.
     public static class JsonUtility
     {
         public static T FromJson<T>(string json) { int at = 0; return (T)Read(json, ref at, typeof(T)); }

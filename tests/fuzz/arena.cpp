@@ -69,7 +69,7 @@ void Arena::seal() {
 
 bool Arena::kept_but(const std::vector<Bytes>& writable) {
   set_guards(false);
-  // What may have changed is put back for the while.
+  // Outputs that may have changed are restored for this check.
   std::vector<std::vector<std::uint8_t>> found;
   const auto place_of = [&](const Bytes& bytes) {
     return static_cast<std::size_t>(static_cast<const std::uint8_t*>(bytes.data) - memory_.data());

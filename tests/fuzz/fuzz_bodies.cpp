@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Two bodies, the ground and scenes: what they find is checked where it is quickly told, and hostile calls are refused.
+// Two bodies, the ground and scenes: results are checked where that is quick, and hostile calls are refused.
 #include <algorithm>
 #include <cmath>
 
@@ -51,7 +51,7 @@ void add_body_ways(Case& c, JobBody& body, Ways& ways) {
   }
 }
 
-// What all jobs of this file have.
+// Ways that all jobs of this file share.
 template <typename Job>
 void add_common_ways(Case& c, Job& job, Target& other, Ways& ways) {
   ways.emplace_back([&] { job.scratch = nullptr, c.spoil(SC_NULL, SC_FIELD_SCRATCH); });

@@ -56,7 +56,7 @@ std::size_t asset_count();
 // From harmless to NaN, infinite, subnormal and huge: in some calls none, in some a few, in some all.
 void fill_figures(Case& c, float* figures, std::size_t count);
 
-// None, fewer than there are, exactly as many, more.
+// Draws a capacity: zero, too small, exact, or too large.
 std::size_t draw_capacity(Case& c, std::size_t there_are);
 
 Target draw_target(Case& c);

@@ -170,7 +170,7 @@ Ended run(const std::vector<std::string>& command, const fs::path& error) {
   return {true, status};
 }
 
-// What is wrong with how a run ended; empty where nothing is.
+// Says how a run failed. Empty if it did not.
 std::string fault(const Ended& ended, const std::string& error, bool bakes, bool has_output) {
   if (!ended.in_time) return "runs for more than " + std::to_string(kRunSeconds) + " s";
   if (!WIFEXITED(ended.status)) return std::string("ends by a signal: ") + ::strsignal(WTERMSIG(ended.status));

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kMaxContacts = 60, kMaxScratch = std::size_t{1} << 18;
 
-// Those of the pose, or any triangles with any segments.
+// Takes contacts of the pose, or any triangles with any segments.
 void draw_contacts(Case& c, PenetrationJob& job, const Surface& surface) {
   TriangleContact* const contacts = c.arena.add<TriangleContact>(job.contact_count);
   job.contacts = contacts;

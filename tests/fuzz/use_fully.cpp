@@ -45,7 +45,7 @@ void read_all(const Asset& asset) {
   for (std::size_t i = 0; i < info.source_buffer_count; ++i) {
     sink = sink + sc_asset_source_buffer(&asset, i).vertex_count;
   }
-  // What only this repository reads: the paper's chains, the automatic rig, the pivots.
+  // Tables that only this repository reads: the paper's chains, the automatic rig, the pivots.
   const AssetView& view = view_of(asset);
   read(view.pivots().data, view.pivots().size);
   for (std::size_t i = 0; i < view.chain_count(); ++i) {

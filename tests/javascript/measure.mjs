@@ -3,7 +3,7 @@
 import { filterOf, frameHashes } from './frame_hashes.mjs';
 import { readPalettes } from '../../samples/javascript/palettes.mjs';
 
-// What is timed, after setPose(); and how often in a row, where a page's clock is too coarse for once.
+// The calls that are timed, after setPose(); and how often in a row, where a page's clock is too coarse for once.
 const CALLS = {
   spherePairs: [body => body.spherePairs(), 20],
   vertices: [body => body.vertices(), 5],

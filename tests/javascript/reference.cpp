@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the JavaScript package must give: reference ASSET PALETTES. A line a frame of the palettes
-// (samples/csharp/write_palettes): hashes of the answers about one body. --pair: instead a line every tenth frame of two
-// bodies. --time: last a line of milliseconds a frame: contacts, then penetrations. SPHERECHAIN_TARGET names an
+// The answers that the JavaScript package must give: reference ASSET PALETTES. A line a frame of the palettes
+// (samples/csharp/write_palettes): hashes of the answers about one body. --pair: instead a line every tenth frame of
+// two bodies. --time: last a line of milliseconds a frame: contacts, then penetrations. SPHERECHAIN_TARGET names an
 // instruction set.
 #include <algorithm>
 #include <chrono>

@@ -29,7 +29,7 @@ function(check_pairs program)
   endif()
 endfunction()
 
-# What crowds on the GPU find, or that there is none.
+# Crowds on the GPU find pairs, or say that there is no GPU.
 function(check_crowd program)
   execute_process(COMMAND ${program} ${ASSET} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE error)
   if(NOT result EQUAL 0 OR NOT (output STREQUAL "${expected_pairs}\n" OR output MATCHES "^60 spheres, no CUDA device: .+\n$"))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bakes, validates and judges what README.md calls gates; a gate that fails prints the commands that show it.
+// Bakes, validates and checks what README.md calls gates; a gate that fails prints the commands that show it.
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -93,7 +93,7 @@ class Gate {
     return out + (gate_.value("contacts", false) ? " --contacts" : "");
   }
 
-  // What is asked for and not reached, a sentence each; a limit may be another figure's name.
+  // Missed gates, a sentence each. A limit may be another figure's name.
   std::vector<std::string> failures(const json& found) const {
     std::vector<std::string> out;
     const auto limit = [&](const json& value) {
@@ -164,7 +164,7 @@ class Workshop {
 };
 
 // True where the gate holds, or cannot be tried.
-bool judge(const Gate& gate, Workshop& workshop) {
+bool passes(const Gate& gate, Workshop& workshop) {
   std::vector<std::string> failures;
   try {
     const json found = workshop.validate(gate);
@@ -213,7 +213,7 @@ int main(int argc, char** argv) {
       const Gate gate(file);
       if (quick && !gate.is_quick()) continue;
       ++tried;
-      failed += judge(gate, workshop) ? 0u : 1u;
+      failed += passes(gate, workshop) ? 0u : 1u;
     }
     fmt::print("{} gates, {} failed\n", tried, failed);
     return tried > 0 && failed == 0 ? 0 : 1;

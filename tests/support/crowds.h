@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a crowd job's caller owns.
+// The memory that a crowd job's caller owns.
 #pragma once
 
 #include <cstddef>

@@ -146,7 +146,7 @@ SkinContacts find_all(Job job, std::size_t scratch_words) {
 
 namespace {
 
-// What a job lacks.
+// Prepares the skin table if the job has none.
 std::unique_ptr<PreparedSkin> prepare(const Asset* asset, const std::uint64_t*& skin_table) {
   if (skin_table != nullptr || asset == nullptr) return nullptr;
   auto made = std::make_unique<PreparedSkin>(*asset);

@@ -61,7 +61,7 @@ struct SkinContacts {
 SkinContacts find_contacts(SkinContactJob job);
 SkinContacts find_contacts(BodyContactJob job);
 
-// What a step job finds: listed whole, and counted first.
+// Contacts of a step job: listed in full, and counted first.
 struct StepContacts {
   Status status{};
   std::vector<StepContact> contacts;

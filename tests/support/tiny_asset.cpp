@@ -91,7 +91,7 @@ void add_rest_pairs(AssetParts& parts, std::mt19937& random) {
   }
 }
 
-// What follows from the spheres and triangles.
+// Derives all data that follow from the spheres and triangles.
 void finish(TinyAsset& tiny, std::mt19937& random) {
   AssetParts& parts = tiny.parts;
   for (const char* name : {"left_arm", "right_arm", "left_leg", "right_leg", "torso"}) {

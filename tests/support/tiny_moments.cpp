@@ -14,8 +14,8 @@ using BoneSet = std::vector<std::uint16_t>;
 
 constexpr Vec3 kOrigin{0.375F, 0.5F, 0.625F};
 
-// What each bone adds to one pivot's centroid, positions relative to the origin.
-std::map<std::uint16_t, Vector4> parts_of(const TinyAsset& tiny, const TinySkin& skin, const Pivot& pivot) {
+// Contribution of each bone to one pivot's centroid, positions relative to the origin.
+std::map<std::uint16_t, Vector4> pivot_contributions(const TinyAsset& tiny, const TinySkin& skin, const Pivot& pivot) {
   std::map<std::uint16_t, Vector4> out;
   for (const std::uint32_t v : {pivot.a, pivot.b, pivot.c}) {
     const double corner[4] = {double{tiny.rest[3 * v]} - double{kOrigin.x},
@@ -36,7 +36,7 @@ struct SphereParts {
     const auto first = tiny.parts.pivots.begin() + sphere.first_pivot;
     std::vector<std::map<std::uint16_t, Vector4>> parts;
     for (auto pivot = first; pivot != first + sphere.pivot_count; ++pivot) {
-      parts.push_back(parts_of(tiny, skin, *pivot));
+      parts.push_back(pivot_contributions(tiny, skin, *pivot));
       for (const auto& [bone, q] : parts.back()) {
         for (std::size_t axis = 0; axis < 4; ++axis) {
           centers[bone][axis] += double{pivot->weight} * q[axis];

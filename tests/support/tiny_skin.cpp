@@ -78,7 +78,7 @@ class Packer {
     return vertex;
   }
 
-  // Those that triangles use, the lowest of those that have the same position and move alike.
+  // Keeps the vertices that triangles use: the lowest of those with the same position and motion.
   void pack_vertices() {
     std::set<std::uint32_t> used;
     for (const Numbers& own : tiny_.triangles) {
@@ -177,8 +177,8 @@ class Packer {
     return found == vertices_[vertex].weights.end() ? 0 : found->second;
   }
 
-  // Of every second sphere all vertices are points, and nothing is off; of the others at most five, and the vertices'
-  // shares are as many parts of 1 each.
+  // For every second sphere, all vertices are hull points and nothing is off. The others have at most five points, and
+  // each vertex has equal shares in them, which add up to 1.
   void pack_hull(std::size_t sphere, std::size_t first_cluster) {
     std::set<std::uint32_t> all, bones;
     for (std::size_t c = first_cluster; c < members_.size(); ++c) {

@@ -22,7 +22,7 @@ public class SpherechainColliders : MonoBehaviour
         public Transform a, b;
     }
 
-    // What Start takes out of the physics: all colliders of one body against all of the other.
+    // Pairs of bodies between which Start disables collisions: all colliders of one against all of the other.
     public List<IgnoredPair> ignored = new List<IgnoredPair>();
 
     void Start()

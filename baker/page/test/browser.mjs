@@ -1,4 +1,4 @@
-// What the tests need of a browser: pages that must stay silent, pictures, and how much two pictures differ.
+// Browser helpers for tests: pages that must stay silent, pictures, and how much two pictures differ.
 import assert from 'node:assert/strict';
 import { pathToFileURL } from 'node:url';
 import { chromium } from 'playwright-core';

@@ -157,7 +157,7 @@ test('spheres are moved, resized, added and deleted, parts ignored; undone and r
   assert.ok(await again.page.locator('#edit-save').isDisabled(), 'nothing is new');
   assert.ok(await again.page.locator('#stale').isHidden());
   assert.deepEqual(canonical((await edits(again.page)).file), canonical(all));
-  // Taken back, there is no edit of a sphere left, and the one that was deleted is there again.
+  // After undo, there is no edit of a sphere left, and the one that was deleted is there again.
   for (let i = 0; i < 3; ++i) await again.page.locator('#edit-list .link').first().click();
   const back = await edits(again.page);
   assert.deepEqual(back.file.spheres, []);

@@ -119,7 +119,7 @@ test('contacts are the triangles of the skin that play reports, with class and d
     });
     assert.equal(await page.locator('.readout .warning').count(), listed.some(isFault) ? 1 : 0);
   }
-  // Of the whole clip, as `play` sums it up: a fault's frames are those in which it is one.
+  // Totals of the whole clip, as `play` prints them: a fault counts the frames in which it is a fault.
   const said = new Map(await page.locator('.clip-contact').evaluateAll((all) => all.map((row) => ['.part-names', '.count'].map((part) => row.querySelector(part).textContent))).then((rows) => rows.map(([name, count]) => [inAnyOrder(name), count])));
   const { contacts: played } = pages.clip;
   assert.equal(said.size, played.length);
@@ -392,7 +392,7 @@ test('charts show what play measured, and a click on them seeks', async () => {
   assert.equal(await frame(page), 10);
 });
 
-test('the worst misses lead to their frame, and the bake is told whole', async () => {
+test('the worst misses lead to their frame, and the bake is shown whole', async () => {
   const page = await fresh();
   await page.keyboard.press('m');
   await page.locator('#tab-accuracy').click();

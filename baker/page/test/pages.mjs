@@ -32,7 +32,7 @@ export function makePages({ tool, human, huesitos, poses, folder }) {
     inspect: JSON.parse(run('inspect', asset, '--json')),
     report: readJson('report.json'),
     validation: readJson('validation.json'),
-    // What `view` says to a changed file of another command.
+    // The message of `view` for a changed file of another command.
     view(option, name, change) {
       const data = readJson(name);
       change(data);

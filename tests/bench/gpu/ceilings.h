@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the device can do at most, measured; and the nearest neighbour's way of finding pairs.
+// Upper limits of the device, measured; and the nearest neighbour's way of finding pairs.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is measured against each other in one run, passes in random order.
+// Methods that are measured against each other in one run, passes in random order.
 #pragma once
 
 #include <cstddef>

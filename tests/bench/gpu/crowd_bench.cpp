@@ -114,7 +114,7 @@ std::size_t refit_multiply_adds(const AssetView& asset) {
 }
 
 // Does the goal's line, and says so.
-void judge(const char* what, double value, const char* unit, bool is_met, const char* goal) {
+void check_limit(const char* what, double value, const char* unit, bool is_met, const char* goal) {
   std::printf("  P5 %-58s %8.2f %s  goal: %s  %s\n", what, value, unit, goal, is_met ? "met" : "MISSED");
 }
 
@@ -182,10 +182,10 @@ bool bench_character(const std::string& folder, const std::string& name, const C
       least_operations, least_operations / ceilings.multiply_adds_a_second * 1e9,
       100 * least_operations / ceilings.multiply_adds_a_second * 1e9 / fused);
   if (has_goals) {
-    judge("bones in, pairs out, fused", fused, "ns", fused <= 3, "at most 3");
-    judge("spheres in, pairs out", detect, "ns", detect <= 1.5, "at most 1.5");
-    judge("a block a character (cuRobo's mapping) over counts out", block / counts, "x ", block / counts >= 5,
-          "at least 5");
+    check_limit("bones in, pairs out, fused", fused, "ns", fused <= 3, "at most 3");
+    check_limit("spheres in, pairs out", detect, "ns", detect <= 1.5, "at most 1.5");
+    check_limit("a block a character (cuRobo's mapping) over counts out", block / counts, "x ", block / counts >= 5,
+                "at least 5");
     std::printf("     ... over counts and bits out, which that has not %16.2f x\n", block / detect);
   }
 

@@ -158,7 +158,7 @@ void DeviceCrowd::enqueue(bool from_bones, unsigned outputs, std::size_t instanc
 
 bool DeviceCrowd::runs_right(bool from_bones, unsigned outputs) {
   const auto spoil = [](auto&... arrays) { (arrays.spoil(), ...); };
-  // What an earlier launch left is right, perhaps.
+  // Results of an earlier launch could pass for those of this one, so they are overwritten.
   spoil(refitted_, counts_, bits_, starts_, pair_count_, pairs_);
   enqueue(from_bones, outputs, instances_);
 

@@ -10,7 +10,7 @@
 
 namespace spherechain::bench {
 
-// What the CPU makes of each pose.
+// The CPU's results for each pose.
 struct Reference {
   std::vector<Sphere> spheres;        // pose after pose
   std::vector<std::uint32_t> counts;  // a pose each

@@ -68,7 +68,7 @@ bool same(const std::vector<ChainPair>& l, const std::vector<ChainPair>& r) {
                     [](const ChainPair& p, const ChainPair& q) { return p.chain == q.chain && p.pair == q.pair; });
 }
 
-// What the CPU finds in each frame of an animation, by method.
+// The CPU's results for each frame of an animation, by method.
 struct Expected {
   std::vector<std::vector<ChainPair>> m1, m2;
   const std::vector<ChainPair>& of(CpuMethod method, std::size_t frame) const {

@@ -92,7 +92,7 @@ def vector(name, values):
     return property_of(name, "Vector3D", "Vector", "", *map(float, values))
 
 
-class Way:
+class NodeTransform:
     """How a node says its matrix: pre- and post-rotation, pivots, offsets, the order of its angles."""
 
     def __init__(self):
@@ -126,7 +126,7 @@ def ways_of(scene, draw):
 
     right = {}
     for node in scene.nodes:
-        way = ways[id(node)] = Way()
+        way = ways[id(node)] = NodeTransform()
         if node.role is None:
             continue
         if pre and rng.random() < 0.7:
@@ -354,7 +354,7 @@ def write(scene, folder, draw):
     prepare_meshes(scene, draw)
     ways = ways_of(scene, draw)
     for node in scene.nodes:
-        ways.setdefault(id(node), Way())
+        ways.setdefault(id(node), NodeTransform())
     worlds = scene.worlds()
     # At bind time the mesh's node stands where it stands at rest, or somewhere else.
     for mesh in scene.meshes:

@@ -24,7 +24,7 @@ std::vector<std::uint64_t> read(const char* path) {
   return bytes;
 }
 
-// What a game does before its first frame, and a launch of nothing. Needs no device.
+// The calls of a game before its first frame, and a launch of nothing. Needs no device.
 bool prepare(const Asset& asset) {
   std::vector<std::uint64_t> table(cuda::crowd_table_words(asset));
   return cuda::prepare_crowd(asset, SC_RADIUS_DETECT, nullptr, table.data(), table.size()) == SC_OK &&

@@ -233,7 +233,7 @@ TEST_CASE("as glb: a glTF and the files beside it become one, and nothing else o
   check_same(import_character(path), read_back(glb));
   CHECK(read_back(glb).rig.clips[0].in_file == 0);
 
-  // What is one file already stays byte for byte, and a picture that is not there stays a name.
+  // A file without others stays byte for byte, and a missing picture stays a name.
   box.json.erase("images");
   CHECK(read_as_glb(folder.write("one.glb", box.bytes())) == box.bytes());
   std::filesystem::remove(folder.path / "a b.png");

@@ -100,7 +100,7 @@ BoneMatrices random_pose(std::size_t bones, PoseKind kind, double size, std::mt1
 
 BoneMatrices rest_pose(std::size_t bones) { return BoneMatrices(bones, Matrix34::Identity()); }
 
-// What is left is the tables' rounding to single precision. Of the height; a spread's is its sphere's radius'.
+// Error from rounding the tables to single precision, as a share of the height; of a spread, of the radius.
 struct Difference {
   double center = 0, radius = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What people call each part of a body, from the rig's roles or the automatic rig.
+// The names that people have for each part of a body, from the rig's roles or the automatic rig.
 #include "bind/body_parts.h"
 
 #include <doctest/doctest.h>
@@ -74,7 +74,7 @@ Character one_triangle_a_bone(const NamedRig& rig) {
 }
 
 // The part of each node that moves skin, by the node's name.
-std::map<std::string, std::string> parts_of(const NamedRig& rig) {
+std::map<std::string, std::string> part_names_by_node(const NamedRig& rig) {
   const Character character = one_triangle_a_bone(rig);
   const BodyParts parts = find_body_parts(character, roles_of(rig), {}, {}, {});
   check_whole(character, parts);
@@ -147,7 +147,7 @@ TEST_CASE("the parts of a body stay where only later settings differ" * doctest:
 }
 
 TEST_CASE("a hand has its fingers, a foot its toes, a limb its twist bones") {
-  const auto parts = parts_of(named_rig(kMixamo));
+  const auto parts = part_names_by_node(named_rig(kMixamo));
   CHECK(parts.at("mixamorig:Hips") == "hips");
   CHECK(parts.at("mixamorig:Spine1") == "abdomen");
   CHECK(parts.at("mixamorig:Spine2") == "chest");
@@ -160,7 +160,7 @@ TEST_CASE("a hand has its fingers, a foot its toes, a limb its twist bones") {
 }
 
 TEST_CASE("twist joints of the topmost spine joint are the chest's") {
-  const auto parts = parts_of(named_rig(R"(
+  const auto parts = part_names_by_node(named_rig(R"(
 Hips = pelvis
   Hips_twist1 = other
   Spine = spine
@@ -183,7 +183,7 @@ Hips = pelvis
 }
 
 TEST_CASE("hair is the head's, garments and attachments are parts of their own") {
-  const auto parts = parts_of(named_rig(R"(
+  const auto parts = part_names_by_node(named_rig(R"(
 Root = !root
   J_Bip_C_Hips = pelvis
     J_Sec_L_SkirtBack0_01 = other
@@ -230,7 +230,7 @@ Root = !root
 }
 
 TEST_CASE("animals have forelegs and hind legs, insects numbered legs") {
-  const auto fox = parts_of(named_rig(kFox, Body::kFox));
+  const auto fox = part_names_by_node(named_rig(kFox, Body::kFox));
   std::set<std::string> names;
   for (const auto& [node, part] : fox) names.insert(part);
   for (const char* name : {"head", "neck", "tail", "left upper foreleg", "right lower foreleg", "left forefoot",
@@ -238,7 +238,7 @@ TEST_CASE("animals have forelegs and hind legs, insects numbered legs") {
     CHECK_MESSAGE(names.count(name) == 1, name);
   }
   names.clear();
-  for (const auto& [node, part] : parts_of(insect(3, true))) names.insert(part);
+  for (const auto& [node, part] : part_names_by_node(insect(3, true))) names.insert(part);
   for (const char* name : {"body", "head", "left leg 1 thigh", "right leg 3 thigh", "left leg 2 shin"}) {
     CHECK_MESSAGE(names.count(name) == 1, name);
   }

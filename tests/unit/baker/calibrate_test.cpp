@@ -141,7 +141,7 @@ TEST_CASE("a contact is worth more false alarms where too few contacts would be 
   CHECK(reaches({often, dear}, 0.2)[1] == doctest::Approx(0.7).epsilon(0.02));
   add(often, 90, 1, true);
   CHECK(reaches({often, dear}, 0.2)[1] < 0.6);
-  // Of other poses than the expected ones fewer are enough.
+  // Fewer samples are enough for poses that are not expected.
   SampledPair other{{0, 3}, {}};
   add(other, 9, 1, true, false);
   add(other, 20, 1.2F, false, false);

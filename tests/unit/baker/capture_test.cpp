@@ -74,7 +74,7 @@ const std::vector<Part>& parts() {
   return all;
 }
 
-// What a joint does in a frame: a turn about one of the body's axes (0 left, 1 up, 2 forward).
+// Motion of a joint in a frame: a turn about one of the body's axes (0 left, 1 up, 2 forward).
 struct Turn {
   int axis = 0;
   double degrees = 0;
@@ -523,5 +523,5 @@ TEST_CASE("a capture that is broken is refused with the file's name and the caus
   CHECK(says(refusal(late), "after its children"));
   CHECK(says(refusal("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n"
                      "MOTION\nFrames: 1\nFrame Time: 1\n0\n"),
-             "cannot be told"));
+             "cannot be recognised"));
 }

@@ -40,7 +40,7 @@ const std::vector<PlantedClip> kThrough{{"through", {150, 150, 150, 150}, true, 
 // At 15 frames a second it is above the wall in both, and in its face on the way.
 const std::vector<PlantedClip> kDetour{{"detour", {150, 150, 150}, true, {1500, 0, 1500}}};
 
-// Of one content: the bake is made once.
+// All tests of one content share this cache, so that the bake is made once.
 const std::string& shared_cache() {
   static const TemporaryFolder folder;
   static const std::string option = " --cache " + folder.path.string();
@@ -223,7 +223,7 @@ TEST_CASE("--accept drops an entry of a baseline only if its fault was looked fo
   CHECK(after[5]["clip"] == "clean");
 }
 
-TEST_CASE("what is wrong with a baseline, rules or a manifest is told by file, entry and key") {
+TEST_CASE("errors of a baseline, rules or a manifest name file, entry and key") {
   const PlantedLibrary library({kClips[1]});
   const std::string file = library.path("baseline.json");
   REQUIRE(library.check(" --accept --baseline " + file).code == 0);
@@ -492,7 +492,8 @@ TEST_CASE("results that somebody deletes while check runs are lost, and no chara
       const auto clips = baker::check_library(read, options, store, [&](const baker::RunState& state) {
         if (state.doing == when && state.done == state.all) fs::remove_all(store.folder());
       });
-      baker::judge(clips, {{read[0].name, read[0].file.string(), {}}}, store, {}, false, baker::FailOn::kPenetration);
+      baker::evaluate_clips(clips, {{read[0].name, read[0].file.string(), {}}}, store, {}, false,
+                            baker::FailOn::kPenetration);
     };
     CHECK_THROWS_WITH(check(), lost.c_str());
   }
@@ -553,7 +554,7 @@ TEST_CASE("a damaged file of the cache is as good as none, and is made again" * 
   CHECK(count == 8);
 }
 
-TEST_CASE("a link to nothing and a bad baseline are told, the baseline before any work") {
+TEST_CASE("a link to nothing and a bad baseline are reported, the baseline before any work") {
   const PlantedLibrary library({kClips[1]});
   fs::create_symlink("nowhere", library.folder.path / "gone.glb");
   const tool::Run run = tool::run(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a command line, a disk and a user's files may do to the tool: never an internal error.
+// Hostile command lines, disks and files: they never cause an internal error.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the command line writes over, and what it does not.
+// Files that the command line replaces, and files that it does not.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -137,8 +137,9 @@ TEST_CASE("no command writes over the materials of an OBJ: named with blanks, se
     check_refused(folder.path, fmt::format("bake {} --force -o out --report {}", obj, material), "INPUT", "--report");
     check_refused(folder.path, fmt::format("view a.sphc --source {} --force -o {}", obj, material), "--source", "-o");
   }
-  check_refused(folder.path, fmt::format("play a.sphc --source a.glb --motion {0}/frames --json {0}/frames/one.mtl", at),
-                "--motion", "--json");
+  check_refused(folder.path,
+                fmt::format("play a.sphc --source a.glb --motion {0}/frames --json {0}/frames/one.mtl", at), "--motion",
+                "--json");
   // The comment and the other word name nothing: this is refused for what is in the file.
   for (const char* file : {"not.mtl", "none.mtl"}) {
     touch(folder, file);

@@ -12,8 +12,8 @@ namespace bk = spherechain::baker;
 namespace {
 
 // Depths of the parts 0 and 1 by frame; 0 where they do not meet.
-std::vector<bk::PartMeeting> meetings(const std::vector<double>& depths) {
-  std::vector<bk::PartMeeting> out;
+std::vector<bk::FramePenetration> meetings(const std::vector<double>& depths) {
+  std::vector<bk::FramePenetration> out;
   for (std::size_t i = 0; i < depths.size(); ++i) {
     if (depths[i] <= 0) continue;
     out.push_back({static_cast<int>(i), {}});
@@ -25,7 +25,7 @@ std::vector<bk::PartMeeting> meetings(const std::vector<double>& depths) {
 
 // "from-to@deepest", one after another.
 std::string events(const std::vector<double>& depths, bool loops = false) {
-  const std::vector<bk::PartMeeting> list = meetings(depths);
+  const std::vector<bk::FramePenetration> list = meetings(depths);
   std::string out;
   for (const bk::EventSpan& span : bk::join_events(list, static_cast<int>(depths.size()), loops)) {
     out += (out.empty() ? "" : " ") + std::to_string(span.from) + "-" + std::to_string(span.to) + "@" +
@@ -98,7 +98,7 @@ TEST_CASE("frames between add to the events of whole frames, and join none of th
 }
 
 TEST_CASE("events of different parts are apart") {
-  std::vector<bk::PartMeeting> list = meetings({1, 1});
+  std::vector<bk::FramePenetration> list = meetings({1, 1});
   list.push_back(list[1]);
   list.back().found.other = 2;
   const std::vector<bk::EventSpan> spans = bk::join_events(list, 2, false);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What engines cannot hold is replaced, and said. Whether the files say the right thing tests/export judges.
+// Shapes that engines cannot hold are replaced, and reported. Whether the files say the right thing tests/export
+// judges.
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -6,7 +6,7 @@
 #include "glb_writer.h"
 #include "import/import.h"
 
-// What the reader makes of a file.
+// Reads the file with the reader under test.
 spherechain::baker::SourceMesh read(const Glb& glb, bool attachments = false);
 
 // Where a file's vertices are in the world while its nodes stand as it says, straight from the specification's section

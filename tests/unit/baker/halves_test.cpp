@@ -78,7 +78,7 @@ FittedCharacter fitted(const SourceMesh& mesh, const BakeSettings& settings = {}
   return fit_character(build_character(mesh, "hand.glb"), {}, settings);
 }
 
-// What every such fit keeps to.
+// Checks the rules that every such fit follows.
 void check_fit(const FittedCharacter& fit, std::size_t most) {
   const Regions& regions = fit.segmentation.regions;
   const Mesh& skin = fit.character.skin;

@@ -6,12 +6,12 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "fix/constraints.h"
 #include "fix/joints.h"
 #include "fix/obstacle.h"
 #include "fix/part_joints.h"
-#include "fix/pins.h"
 #include "fix/solve.h"
-#include "fix/spans.h"
+#include "fix/time_windows.h"
 #include "fix/ways_out.h"
 #include "named_rig.h"
 
@@ -88,28 +88,28 @@ struct Sticks {
 
   Vec3 at(int frame, Index joint) const { return turned.pose(frame, turns).axes[joint].translation(); }
 
-  // Gauss-Newton: a joint goes so far, with what `hold` wishes for.
+  // Gauss-Newton: moves a joint by `by` under the constraints that `hold` adds.
   template <typename Hold>
   void move(int frame, Index joint, const Vec3& by, const Hold& hold) {
     const Vec3 to = at(frame, joint) + by;
     for (int round = 0; round < 12; ++round) {
-      std::vector<Wish> wishes;
+      std::vector<Constraint> constraints;
       const TurnedClip::Pose pose = turned.pose(frame, turns);
       const std::vector<Vec3> now = turned.turns_at(frame, turns);
       const Vec3 here = pose.axes[joint].translation();
       for (int axis = 0; axis < 3; ++axis) {
-        Wish wish;
-        wish.weight = wish.weight_over = 1e4;
-        wish.value = to[axis] - here[axis];
+        Constraint constraint;
+        constraint.weight = constraint.weight_above = 1e4;
+        constraint.target = to[axis] - here[axis];
         for (const Index above : turned.above_joint(joint)) {
           const Vec3 d = turn_moves(pose.axes[above], here, now[above]).row(axis).transpose();
-          wish.value += d.dot(now[above]);
-          wish.parts.push_back({frame, above, d});
+          constraint.target += d.dot(now[above]);
+          constraint.terms.push_back({frame, above, d});
         }
-        wishes.push_back(wish);
+        constraints.push_back(constraint);
       }
-      for (int f = 0; f < kClipFrames; ++f) hold(f, wishes);
-      turns = solve_turns(turned, std::vector<char>(kClipFrames, 1), wishes, turns, 0);
+      for (int f = 0; f < kClipFrames; ++f) hold(f, constraints);
+      turns = solve_turns(turned, std::vector<char>(kClipFrames, 1), constraints, turns, 0);
     }
   }
 };
@@ -119,14 +119,14 @@ struct Sticks {
 TEST_CASE("mend: a foot that is pinned stays, whatever its knee does") {
   Sticks s({"thigh.L", "shin.L", "foot.L"}), loose({"thigh.L", "shin.L", "foot.L"});
   const Vec3 foot = s.at(30, 2);
-  const auto pins = [&](int f, std::vector<Wish>& wishes) {
-    add_pins(s.turned, {2}, f, kStickHeight, s.turns, wishes);
+  const auto pins = [&](int f, std::vector<Constraint>& constraints) {
+    add_pinned_joints(s.turned, {2}, f, kStickHeight, s.turns, constraints);
   };
   s.move(30, 1, {0.02, 0, 0}, pins);
   CHECK(s.turns[30 * s.turned.count()].norm() > 0.1 * kDegree);
   CHECK((s.at(30, 2) - foot).norm() < 1e-4);
   CHECK((s.turned.pose(30, s.turns).axes[2].linear() - Eigen::Matrix3d::Identity()).norm() < 0.01);
-  loose.move(30, 1, {0.02, 0, 0}, [](int, std::vector<Wish>&) {});
+  loose.move(30, 1, {0.02, 0, 0}, [](int, std::vector<Constraint>&) {});
   CHECK((loose.at(30, 2) - foot).norm() > 0.01);
 }
 
@@ -138,8 +138,8 @@ TEST_CASE("mend: hands that hold one thing keep their grip") {
   };
   const Affine before = seen();
   const Vec3 hand = s.at(30, 2);
-  const auto holds = [&](int f, std::vector<Wish>& wishes) {
-    add_grip(s.turned, 2, 5, f, kStickHeight, s.turns, wishes);
+  const auto holds = [&](int f, std::vector<Constraint>& constraints) {
+    add_hand_constraint(s.turned, 2, 5, f, kStickHeight, s.turns, constraints);
   };
   s.move(30, 2, {0, 0.03, 0}, holds);
   CHECK((s.at(30, 2) - hand).norm() > 0.02);
@@ -152,14 +152,14 @@ TEST_CASE("mend: it sees which hands stand, and which hold one thing") {
   const Vec3 up(0, 1, 0), forward(0, 0, 1);
   const Sticks still(names);
   for (const auto& hands : planted_hands(still.turned, {1, 3}, {4}, up, kStickHeight)) CHECK(hands.empty());
-  for (const char holds : gripping_frames(still.turned, 1, 3, kStickHeight)) CHECK(holds == 0);
+  for (const char holds : frames_with_joined_hands(still.turned, 1, 3, kStickHeight)) CHECK(holds == 0);
   // The body bends over: a ground as high as the hands is one that they stand on.
   CHECK(planted_hands(still.turned, {1, 3}, {1}, up, kStickHeight)[30] == std::vector<Index>{1, 3});
   // Arms across the body, still but for the last frames.
   std::vector<double> left(kClipFrames, -75), right(kClipFrames, 75);
   for (int f = 45; f < kClipFrames; ++f) left[static_cast<std::size_t>(f)] += 3 * (f - 44);
   const Sticks held(names, {rotations("upper_arm.L", forward, left), rotations("upper_arm.R", forward, right)});
-  const std::vector<char> holds = gripping_frames(held.turned, 1, 3, 2 * kStickHeight);
+  const std::vector<char> holds = frames_with_joined_hands(held.turned, 1, 3, 2 * kStickHeight);
   CHECK(holds[20] == 1);
   CHECK(holds[50] == 0);
 }
@@ -191,7 +191,7 @@ TEST_CASE("mend: a way out turns as little as it must, and changes sides only wh
   Sticks s({"upper_arm.L"});
   const LimbInTrouble limb{{0}, {0}, {}, 10, 40, {25}};
   // Two ways lead out, about z: early one side, late the other; between them the shorter one changes by the frame.
-  const auto judge = [&](const std::vector<TriedPose>& poses) {
+  const auto evaluate = [&](const std::vector<TriedPose>& poses) {
     std::vector<double> out;
     for (const TriedPose& pose : poses) {
       const double z = pose.turns[0].z(), even = pose.frame % 2 == 0 ? 0.5 : -0.5;
@@ -201,11 +201,11 @@ TEST_CASE("mend: a way out turns as little as it must, and changes sides only wh
     }
     return out;
   };
-  const auto way = find_way_out(s.turned, limb, 25 * kDegree, s.turns, judge);
+  const auto way = find_way_out(s.turned, limb, 25 * kDegree, s.turns, evaluate);
   REQUIRE(way.size() == 31);
   int changes = 0;
   for (const auto& [frame, turns] : way) {
-    CHECK(judge({{frame, turns}})[0] == 0);
+    CHECK(evaluate({{frame, turns}})[0] == 0);
     CHECK(std::abs(turns[0].z()) > 9 * kDegree);
     CHECK(std::abs(turns[0].z()) < 12 * kDegree);
     if (frame > 10 && turns[0].z() * way.at(frame - 1)[0].z() < 0) ++changes;
@@ -239,13 +239,13 @@ TEST_CASE("mend: it says why a limb stays where it is") {
       return out;
     });
   };
-  CHECK(obstacle_of(20).outcome == Outcome::kNoWayOut);  // it is free alone: another limb is in its way
-  CHECK(obstacle_of(40).outcome == Outcome::kOverBudget);
+  CHECK(obstacle_of(20).outcome == MendOutcome::kNoWayOut);  // it is free alone: another limb is in its way
+  CHECK(obstacle_of(40).outcome == MendOutcome::kOverBudget);
   CHECK(obstacle_of(40).needed_degrees >= 40);
   CHECK(obstacle_of(40).needed_degrees < 50);
-  CHECK(obstacle_of(-60).outcome == Outcome::kJointLimits);
+  CHECK(obstacle_of(-60).outcome == MendOutcome::kJointLimits);
   const auto never = [](const std::vector<TriedPose>& poses) { return std::vector<double>(poses.size(), 1); };
-  CHECK(find_obstacle(s.turned, limb, 25, 25, never).outcome == Outcome::kNoWayOut);
+  CHECK(find_obstacle(s.turned, limb, 25, 25, never).outcome == MendOutcome::kNoWayOut);
 }
 
 TEST_CASE("mend: a joint that shakes is seen and smoothed; one that swings is let be") {
@@ -268,6 +268,6 @@ TEST_CASE("mend: a joint that shakes is seen and smoothed; one that swings is le
 TEST_CASE("mend: what lies together in time is one span, over a loop's seam too") {
   const std::vector<char> windows{1, 1, 0, 0, 1, 0, 1};
   using Spans = std::vector<std::vector<std::size_t>>;
-  CHECK(spans_of(windows, false) == Spans{{0, 1}, {4}, {6}});
-  CHECK(spans_of(windows, true) == Spans{{0, 1, 6}, {4}});
+  CHECK(contiguous_runs(windows, false) == Spans{{0, 1}, {4}, {6}});
+  CHECK(contiguous_runs(windows, true) == Spans{{0, 1, 6}, {4}});
 }

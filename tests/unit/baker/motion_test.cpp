@@ -42,7 +42,7 @@ class PoseFolder {
   fs::path path_;
 };
 
-// What reading a pose file complains about; empty where it does not.
+// The error message for a pose file. Empty if it can be read.
 std::string complaint(const fs::path& file) {
   try {
     read_pose_motion(file, rigged_human().joints);

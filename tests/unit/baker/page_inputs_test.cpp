@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `view` takes from other commands: about the same asset, and all there that the page's script reads.
+// Files that `view` takes from other commands: about the same asset, and all there that the page's script reads.
 #include "page/page_inputs.h"
 
 #include <doctest/doctest.h>
@@ -103,26 +103,11 @@ void check_each_is_needed(Reader read, const json& whole, const std::vector<cons
 
 TEST_CASE("a bake report is shown only whole: each key that the page reads is asked for by name" *
           doctest::test_suite("many bakes")) {
-  check_each_is_needed(read_bake_report, made().report,
-                       {"/source",
-                        "/source/sha256",
-                        "/source/file",
-                        "/settings",
-                        "/counts",
-                        "/counts/why",
-                        "/bind",
-                        "/bind/quality",
-                        "/bind/quality/grade",
-                        "/bind/quality/protrusion",
-                        "/edits",
-                        "/edits/missed",
-                        "/missed_targets",
-                        "/stages",
-                        "/stages/0",
-                        "/stages/1/stage",
-                        "/stages/2/seconds",
-                        "/total_seconds",
-                        "/peak_memory_mb"});
+  check_each_is_needed(
+      read_bake_report, made().report,
+      {"/source", "/source/sha256", "/source/file", "/settings", "/counts", "/counts/why", "/bind", "/bind/quality",
+       "/bind/quality/grade", "/bind/quality/protrusion", "/edits", "/edits/missed", "/missed_targets", "/stages",
+       "/stages/0", "/stages/1/stage", "/stages/2/seconds", "/total_seconds", "/peak_memory_mb"});
 }
 
 TEST_CASE("a validation is shown only whole, and of spheres that the asset has") {

@@ -21,7 +21,7 @@ using spherechain::test::refit;
 
 constexpr double kTolerance = 1e-5;  // of the height
 
-// What a game would pass: matrices by columns, the rest bone's the identity.
+// The bone matrices that a game would pass: by columns, the identity for the rest bone.
 std::vector<float> palette(const spherechain::baker::OpenAsset& asset, const std::vector<Affine>& bones) {
   std::vector<float> out;
   for (std::size_t b = 0; b < asset->bone_count(); ++b) {

@@ -9,7 +9,7 @@
 #include "import/import.h"
 #include "mesh/error.h"
 
-// What `import` says when it refuses `file`: one line that begins with the file's name. "accepted" where it does not.
+// The message with which `import` refuses `file`: one line with the file's name first. "accepted" if it does not.
 template <typename Import>
 std::string refusal(const std::filesystem::path& file, const Import& import) {
   try {

@@ -18,7 +18,7 @@ const spherechain::baker::RoleLimb& limb_called(const spherechain::baker::Roles&
 using Names = std::vector<std::string>;
 Names names_of(const NamedRig& rig, const std::vector<int>& nodes);
 
-// What does not depend on a node's number: its name, role and limb's name.
+// Facts that do not depend on a node's number: its name, role and limb's name.
 Names summary_of(const NamedRig& rig);
 
 // Trees for named_rig(): a human's by two schemes, a fox'.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What truly intersects, against CGAL's own search and against shapes where it is known; and the score kept of it.
+// The true intersections, against CGAL's own search and against shapes where it is known; and the score kept of it.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -195,7 +195,7 @@ TEST_CASE("what is at rest too, of one sphere or of an ignored pair is counted a
   std::vector<Pair> rest{at_rest, same_at_rest};
   std::sort(rest.begin(), rest.end());
 
-  const FrameTruth truth = judge(
+  const FrameTruth truth = frame_truth(
       found, rest, surface, [&](auto l, auto r) { return is_ignored(asset, l, r); },
       [&](const Pair& pair) { return pair == two || pair == ignored || pair == at_rest; });
   CHECK(truth.raw_pairs == 6);

@@ -53,8 +53,8 @@ spherechain::Penetration lesser_first(spherechain::Penetration of) {
   return of;
 }
 
-// Of two bodies that are the asset twice, in which only a part each meets anything, all that is measured in the pose is
-// the same.
+// Two bodies that are the same asset, with only one colliding part each, must give the same measurements in the pose as
+// one body.
 void check_as_bodies(const spherechain::PenetrationJob& one, const spherechain::Penetration& found_in_one) {
   spherechain::Penetration expected = lesser_first(found_in_one);
   std::vector<std::uint64_t> ignored[2];
@@ -202,7 +202,7 @@ std::vector<spherechain::Penetration> TwoShapes::measure(
     CHECK(spherechain::test::same_bits(spherechain::test::measure(job, target), out));
   }
   for (const spherechain::Penetration& two : out) {
-    // Of two bodies no part goes on in the other's.
+    // For two bodies, no part continues in a part of the other.
     const bool has_history = job.previous_count > 0 || job.quick != 0;
     if (two.part != two.other && job.filter == nullptr && !are_joined_ && !has_history) check_as_bodies(job, two);
   }

@@ -32,7 +32,7 @@ Vec3 random_direction(std::mt19937& random) {
   return Vec3(normal(random), normal(random), normal(random)).normalized();
 }
 
-// Of points all over its surface: where rays from inside leave it, by halving.
+// Points all over a volume's surface: where rays from inside leave it, by bisection.
 std::vector<Vec3> surface_points(const Volume& volume, int count, std::mt19937& random) {
   const Vec3 inside = (support(volume, Vec3::UnitX()) + support(volume, -Vec3::UnitX())) / 2;
   std::vector<Vec3> out;
@@ -182,7 +182,7 @@ TEST_CASE("volumes of a human: never more than asked for, nearer to the skin the
     before = fit.gap_mean;
   }
   CHECK(before < 0.01 * height);
-  // What stands in another at rest is not tested, nor is a part against the one it hangs on.
+  // Parts that intersect at rest are not tested, nor is a part against its parent.
   CHECK(overlapping(cones, at_rest(cones)).empty());
   for (std::size_t i = 0; i < cones.bodies.size(); ++i) {
     const int parent = cones.bodies[i].parent;

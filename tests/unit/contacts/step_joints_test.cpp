@@ -53,7 +53,7 @@ int check_all_are_found(const StepContacts& found, const MovingJoints& joints, B
   return seen;
 }
 
-// What is reported to begin on the way does so: its triangles are no farther apart than the tolerance.
+// A contact that is reported to begin on the way does so: its triangles are no farther apart than the tolerance.
 void check_none_is_made_up(const StepContacts& found, const MovingJoints& joints, Blend blend) {
   for (const StepContact& of : found.contacts) {
     CAPTURE(of.part_a);

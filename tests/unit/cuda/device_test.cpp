@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What only a device shows: streams, and graphs.
+// Behaviour that only a device shows: streams, and graphs.
 #include <cuda_runtime_api.h>
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the device behind fake_runtime/cuda_runtime_api.h is, and does next.
+// The state of the device behind fake_runtime/cuda_runtime_api.h, and the result of its next call.
 #pragma once
 
 #include <cstddef>

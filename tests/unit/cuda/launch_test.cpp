@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is launched where: what the emulated runs cannot show.
+// Launches, by kernel and stream: the emulated runs cannot show them.
 #include <doctest/doctest.h>
 
 #include "crowd_cases.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a C99 program gets out of every function of spherechain.h, for a C++ test to compare. */
+/* The results that a C99 program gets from every function of spherechain.h, for a C++ test to compare. */
 #pragma once
 
 #include "spherechain/spherechain.h"
@@ -26,7 +26,7 @@ typedef struct c_calls_result {
 #if defined(__cplusplus)
 extern "C"
 #endif
-    /* Of an asset with bones, 3 by 4 matrices side by side, and the source's rest pose. */
+    /* Calls about an asset with bones: 3 by 4 matrices side by side, and the source's rest pose. */
     void
     c_call_all(const void* data, size_t size, const float* matrices, size_t bone_count, const float* rest,
                size_t vertex_count, c_calls_result* result);

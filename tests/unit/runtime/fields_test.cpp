@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What each job refuses: the status names the field, and nothing is written. tests/fuzz makes many more such calls.
+// Inputs that each job refuses: the status names the field, and nothing is written. tests/fuzz makes many more such
+// calls.
 #include <doctest/doctest.h>
 
 #include <functional>
@@ -80,7 +81,7 @@ struct Scene {
   std::vector<std::uint64_t> memory = std::vector<std::uint64_t>(20000, 7);
 };
 
-// What is wrong with a pose's bones, whatever the job.
+// Errors of a pose's bones, whatever the job.
 template <typename Job>
 std::vector<Refusal<Job>> bone_refusals() {
   return {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a step is made of, by brute force.
+// The pieces of a step, by brute force.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -2,7 +2,7 @@ import { h } from './dom.js';
 import { number, percent, plural } from './format.js';
 import { sphereName } from './sphere_panel.js';
 
-// What `validate` found: how much is reported of what truly intersects, and the worst of what is not; a click goes there.
+// Results of `validate`: how much of what truly intersects is reported, and the worst misses. A click on a miss goes there.
 
 const share = (value) => (value === undefined || value === null ? '–' : percent(value));
 

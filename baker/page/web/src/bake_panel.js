@@ -49,7 +49,7 @@ function tree(value) {
 const section = (title, content, kind = '') => h('section', { class: kind }, h('h3', {}, title), content);
 const hash = (value) => (value ? h('code', { class: 'hash', title: value }, value) : '–');
 
-// Of a setting. Edits are many: the tab for them lists each.
+// Text of a setting's value. Edits are many: the tab for them lists each.
 function valueOf(key, value) {
   if (key === 'edits') return `${plural(value.spheres.length, 'sphere')}, ${plural(value.ignored_parts.length, 'ignored pair')}`;
   return text(isScalar(value) || Array.isArray(value) ? value : JSON.stringify(value));

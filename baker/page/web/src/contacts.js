@@ -17,7 +17,7 @@ export const MEASURES = 12; // numbers of a measured contact (../README.md)
 // The same for both orders of the parts.
 export const keyOf = (parts) => [...parts].sort((a, b) => a - b).join('-');
 
-// What the runtime measured, by the contact's key.
+// Measurements of the runtime, by the contact's key.
 function measured(list) {
   const out = new Map();
   for (let i = 0; i < list.length; i += MEASURES) {
@@ -87,7 +87,7 @@ export class Contacts {
     this.live = found && group(found.pairs, this.partOf, this.nameOf, found.measures);
   }
 
-  // What is shown in a frame.
+  // Contacts that are shown in a frame.
   now(frame) {
     return this.live ?? this.of(frame);
   }

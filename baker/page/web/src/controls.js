@@ -2,8 +2,8 @@ import { h } from './dom.js';
 import { chainColour, regionColour } from './palette.js';
 import { legend } from './sphere_panel.js';
 
-// What is shown. Sets (chains, levels, sides) mark spheres: where any is chosen, all other spheres fade. What the paper's method
-// needs is behind a switch: class `method`.
+// Controls that choose what is shown. Sets (chains, levels, sides) mark spheres: if any is chosen, all other spheres fade.
+// Controls for the paper's method are behind a switch: class `method`.
 
 function check(store, key, label, shortcut, set = (value) => store.set({ [key]: value })) {
   const input = h('input', { type: 'checkbox', id: `show-${key}`, onchange: () => set(input.checked) });

@@ -1,7 +1,7 @@
 import { Vector3 } from 'three';
 
-// What is dragged stays in the plane through it that faces the eye. `at` is the point where the pointer event `hold` takes hold
-// of it; the result says where it is as the pointer moves.
+// Drags a point in the plane through it that faces the eye. `at` is the point that the pointer event `hold` grabs. The result
+// maps a pointer position to the point's new place.
 export function dragPlane(stage, at, hold) {
   const back = new Vector3(...stage.camera().back);
   const meet = ({ clientX, clientY }) => {

@@ -179,7 +179,7 @@ export function createEditor({ model, skin, store, stage, layers, canvas, overla
 
   return {
     keys,
-    // What a reset to `start` sets: while spheres are edited they are seen, and the look at the start comes after.
+    // State after a reset to `start`: while spheres are edited they stay visible, and the initial view comes after.
     asReset(start) {
       if (!store.state.editing) return start;
       before = lookOf(start);

@@ -1,5 +1,5 @@
-// What a person changes: spheres that move, grow, come and go, and pairs of body parts that are ignored; as a file of edits
-// (docs/formats.md#edits). Nothing here is changed in place: a state is replaced by the next, so undoing is going back.
+// Edits of a person: spheres that move, grow, come and go, and ignored pairs of body parts; as a file of edits
+// (docs/formats.md#edits). States are immutable: each edit makes a new one, so undo goes back to an earlier state.
 //
 // A sphere is {id, region, origin, to, deleted}. `origin` is its place where nobody edits it (null: it was added), `to` its own
 // place (null: as in `origin`). Places are in the region's coordinates, in parts of its length.

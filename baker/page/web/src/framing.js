@@ -29,7 +29,7 @@ export function createFraming(model) {
   }
   if (rest.isEmpty()) rest.set(new THREE.Vector3(-0.5, 0, -0.5), new THREE.Vector3(0.5, 1, 0.5));
   const { boxes } = model.motion;
-  // What is laid over each other is in the middle between before and after.
+  // Overlaid states are framed at the middle between before and after.
   const step = new THREE.Vector3(...(model.change?.step ?? [0, 0, 0]));
   const half = step.applyMatrix3(new THREE.Matrix3().setFromMatrix4(toWorld)).divideScalar(2);
   const inTheMiddle = (box) => {

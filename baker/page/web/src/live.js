@@ -55,7 +55,7 @@ export async function openLive(base64, { unitsPerMm }) {
       if (!isQuick) previous = structuredClone([...found]);
       return { pairs, measures, times: { contacts: between - start, depths: performance.now() - between } };
     },
-    // Of the pose that was last looked at.
+    // Spheres of the pose that was evaluated last.
     spheres: (radius) => body.spherePairs({ radius }).spheres.slice(),
     touching: (radius) => body.spherePairs({ radius }).pairs.slice(),
   };

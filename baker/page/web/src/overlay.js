@@ -1,7 +1,7 @@
 import { chainColour, CONTACT, FALSE_ALARM, POINTED } from './palette.js';
 import { css, fitCanvas } from './dom.js';
 
-// What is drawn over the view in two dimensions: chains, pivots, numbers. A name that would cover another is left out.
+// Two-dimensional drawing over the view: chains, pivots, numbers. A name that would cover another is left out.
 
 const LANE = 4; // pixels between chains that share spheres
 

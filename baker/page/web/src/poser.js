@@ -17,7 +17,7 @@ const about = (turn, center) =>
 const turnBetween = (from, to) => new Quaternion().setFromUnitVectors(from.clone().normalize(), to.clone().normalize());
 const across = (v, axis) => v.clone().addScaledVector(axis, -v.dot(axis));
 
-// Of a matrix that turns and no more; null of another.
+// The rotation of a pure rotation matrix; null for any other matrix.
 function turnOf(m) {
   const e = m.elements;
   const rows = [0, 1, 2].map((k) => new Vector3(e[k], e[k + 4], e[k + 8]));

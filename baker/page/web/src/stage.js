@@ -218,7 +218,7 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
     setInk: (colour) => floor.uniforms.ink.value.set(colour),
     pixelRatio: () => renderer.getPixelRatio(),
 
-    // What it looks at, in source units, and the direction from there to the eye.
+    // The camera's target, in source units, and the direction from there to the eye.
     camera() {
       const back = camera.position.clone().sub(controls.target).transformDirection(fromWorld());
       return { target: controls.target.clone().applyMatrix4(fromWorld()).toArray(), back: back.toArray() };

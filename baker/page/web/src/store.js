@@ -1,4 +1,4 @@
-// What the user has chosen, and who wants to know when that changes.
+// The user's choices, and listeners that are called when they change.
 export function createStore(state) {
   const listeners = [];
   return {

@@ -1,4 +1,4 @@
-// What a person has accepted in this browser, until it is exported. A key is an event's: where, which parts, when.
+// Events that a person has accepted in this browser, until they are exported. A key is an event's: where, which parts, when.
 
 const STORE = 'spherechain-accepted';
 
@@ -34,7 +34,7 @@ export const onMarks = (listener) =>
 
 export const isFault = (event) => event.class === 'penetration' || event.class === 'deep_fold';
 
-// What `check --baseline` reads.
+// Writes the file that `check --baseline` reads.
 export function baseline(rows) {
   const events = rows.flatMap((row) =>
     (row.events ?? [])

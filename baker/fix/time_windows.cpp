@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/spans.h"
+#include "fix/time_windows.h"
 
 #include <algorithm>
 #include <array>
@@ -9,13 +9,13 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kShaky = 1.5;        // times the jerk before
-constexpr double kCalm = 5;           // heights a second^3: too little to be seen
+constexpr double kShaky = 1.5;        // ratio of the jerk to that of the source clip
+constexpr double kCalm = 5;           // heights per second^3: an invisible jerk
 constexpr double kMovedAtAll = 2e-3;  // heights
 
 }  // namespace
 
-std::vector<std::vector<std::size_t>> spans_of(const std::vector<char>& in_window, bool loops) {
+std::vector<std::vector<std::size_t>> contiguous_runs(const std::vector<char>& in_window, bool loops) {
   std::vector<std::vector<std::size_t>> out;
   for (std::size_t f = 0; f < in_window.size(); ++f) {
     if (in_window[f] == 0) continue;
@@ -29,8 +29,8 @@ std::vector<std::vector<std::size_t>> spans_of(const std::vector<char>& in_windo
   return out;
 }
 
-void taper(const TurnedClip& clip, Index joint, const std::vector<char>& fails, double seconds, bool loops,
-           Turns& turns) {
+void fade_out(const TurnedClip& clip, Index joint, const std::vector<char>& fails, double seconds, bool loops,
+              Turns& turns) {
   const double pad = seconds * clip.fps();
   for (std::size_t f = 0; f < fails.size(); ++f) {
     double near = HUGE_VAL;
@@ -48,7 +48,7 @@ std::set<Index> shaking_joints(const TurnedClip& clip, const std::vector<std::si
                                double height) {
   std::set<Index> out;
   const Turns none(turns.size(), Vec3::Zero());
-  std::map<std::size_t, std::array<std::vector<Affine>, 2>> poses;  // of a frame: before and after
+  std::map<std::size_t, std::array<std::vector<Affine>, 2>> poses;  // by frame: before and after
   const auto axes = [&](std::size_t frame, std::size_t k, Index joint) {
     auto& both = poses[frame];
     if (both[0].empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/pins.h"
+#include "fix/constraints.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,15 +9,15 @@ namespace spherechain::baker {
 namespace {
 
 // Lengths, in heights.
-constexpr double kReach = 0.1;       // of the points that a joint carries
-constexpr double kStillHand = 3e-3;  // a hand moves less in kHoldTime
-constexpr double kOnGround = 0.03;   // a hand is no more above the lowest ankle of the clip
-constexpr double kNearHands = 0.25;  // hands that hold one thing
-constexpr double kSameGrip = 4e-3;
+constexpr double kReach = 0.1;       // distance of the points that a joint carries
+constexpr double kStillHand = 3e-3;  // largest motion of a planted hand in kHoldTime
+constexpr double kOnGround = 0.03;   // largest height of a planted hand above the clip's lowest ankle
+constexpr double kNearHands = 0.25;  // largest distance of hands that hold one thing
+constexpr double kSameHandPose = 4e-3;
 constexpr double kHoldTime = 0.5;  // seconds
-// Weights of a miss of a height, against a radian of a shoulder.
-constexpr double kPinned = 1e7, kGripped = 1e5;
-constexpr double kLimited = 1e5;  // of a radian
+// Weights of a residual of one height, relative to the cost of a radian at a shoulder.
+constexpr double kPinnedWeight = 1e7, kJoinedHandsWeight = 1e5;
+constexpr double kHingeWeight = 1e5;  // of a residual of one radian
 
 // Three points that a joint carries, in its own axes.
 std::array<Vec3, 3> carried(const Affine& axes, double height) {
@@ -25,7 +25,7 @@ std::array<Vec3, 3> carried(const Affine& axes, double height) {
   return {Vec3(0, 0, 0), Vec3(reach, 0, 0), Vec3(0, reach, 0)};
 }
 
-// A point moves by `to`; it hangs on `joint`, and that on all above.
+// Adds the derivatives of a point's position by the turns of `joint` and of all joints above it.
 void add_moves(const TurnedClip& clip, const TurnedClip::Pose& pose, const std::vector<Vec3>& now, Index joint,
                const Vec3& at, double sign, std::array<std::map<Index, Vec3>, 3>& by) {
   for (const Index above : clip.above_joint(joint)) {
@@ -37,24 +37,24 @@ void add_moves(const TurnedClip& clip, const TurnedClip::Pose& pose, const std::
   }
 }
 
-void add_wishes(const std::array<std::map<Index, Vec3>, 3>& by, const Vec3& missing, int frame,
-                const std::vector<Vec3>& now, double weight, std::vector<Wish>& wishes) {
+void add_constraints(const std::array<std::map<Index, Vec3>, 3>& by, const Vec3& missing, int frame,
+                     const std::vector<Vec3>& now, double weight, std::vector<Constraint>& constraints) {
   for (int axis = 0; axis < 3; ++axis) {
-    Wish wish;
-    wish.weight = wish.weight_over = weight;
-    wish.value = missing[axis];
+    Constraint constraint;
+    constraint.weight = constraint.weight_above = weight;
+    constraint.target = missing[axis];
     for (const auto& [joint, d] : by[static_cast<std::size_t>(axis)]) {
-      wish.value += d.dot(now[joint]);
-      wish.parts.push_back({frame, joint, d});
+      constraint.target += d.dot(now[joint]);
+      constraint.terms.push_back({frame, joint, d});
     }
-    if (!wish.parts.empty()) wishes.push_back(std::move(wish));
+    if (!constraint.terms.empty()) constraints.push_back(std::move(constraint));
   }
 }
 
 }  // namespace
 
-void add_pins(const TurnedClip& clip, const std::vector<Index>& joints, int frame, double height, const Turns& turns,
-              std::vector<Wish>& wishes) {
+void add_pinned_joints(const TurnedClip& clip, const std::vector<Index>& joints, int frame, double height,
+                       const Turns& turns, std::vector<Constraint>& constraints) {
   if (joints.empty()) return;
   const TurnedClip::Pose pose = clip.pose(frame, turns);
   const TurnedClip::Pose wanted = clip.pose(frame, Turns(turns.size(), Vec3::Zero()));
@@ -64,13 +64,13 @@ void add_pins(const TurnedClip& clip, const std::vector<Index>& joints, int fram
       const Vec3 at = pose.axes[pinned] * own, to = wanted.axes[pinned] * own;
       std::array<std::map<Index, Vec3>, 3> by;
       add_moves(clip, pose, now, pinned, at, 1, by);
-      add_wishes(by, to - at, frame, now, kPinned / (height * height), wishes);
+      add_constraints(by, to - at, frame, now, kPinnedWeight / (height * height), constraints);
     }
   }
 }
 
-void add_grip(const TurnedClip& clip, Index one, Index other, int frame, double height, const Turns& turns,
-              std::vector<Wish>& wishes) {
+void add_hand_constraint(const TurnedClip& clip, Index one, Index other, int frame, double height, const Turns& turns,
+                         std::vector<Constraint>& constraints) {
   const TurnedClip::Pose pose = clip.pose(frame, turns);
   const TurnedClip::Pose wanted = clip.pose(frame, Turns(turns.size(), Vec3::Zero()));
   const std::vector<Vec3> now = clip.turns_at(frame, turns);
@@ -80,18 +80,19 @@ void add_grip(const TurnedClip& clip, Index one, Index other, int frame, double 
     std::array<std::map<Index, Vec3>, 3> by;
     add_moves(clip, pose, now, one, at, 1, by);
     add_moves(clip, pose, now, other, to, -1, by);
-    add_wishes(by, to - at, frame, now, kGripped / (height * height), wishes);
+    add_constraints(by, to - at, frame, now, kJoinedHandsWeight / (height * height), constraints);
   }
 }
 
-void add_limits(const TurnedClip& clip, const std::vector<Index>& joints, int frame, std::vector<Wish>& wishes) {
+void add_hinge_limits(const TurnedClip& clip, const std::vector<Index>& joints, int frame,
+                      std::vector<Constraint>& constraints) {
   for (const Index below : joints) {
     for (const Index joint : clip.above_joint(below)) {
       const std::optional<Hinge>& hinge = clip.joints()[joint].hinge;
       if (!hinge) continue;
       const double bend = clip.bend(frame, joint);
-      wishes.push_back({{{frame, joint, hinge->axis}}, hinge->least - bend, kLimited, 0});
-      wishes.push_back({{{frame, joint, -hinge->axis}}, bend - hinge->most, kLimited, 0});
+      constraints.push_back({{{frame, joint, hinge->axis}}, hinge->min_bend - bend, kHingeWeight, 0});
+      constraints.push_back({{{frame, joint, -hinge->axis}}, bend - hinge->max_bend, kHingeWeight, 0});
     }
   }
 }
@@ -122,7 +123,7 @@ std::vector<std::vector<Index>> planted_hands(const TurnedClip& clip, const std:
   return out;
 }
 
-std::vector<char> gripping_frames(const TurnedClip& clip, Index one, Index other, double height) {
+std::vector<char> frames_with_joined_hands(const TurnedClip& clip, Index one, Index other, double height) {
   const auto frames = static_cast<std::size_t>(clip.frames());
   const Turns none(frames * clip.count(), Vec3::Zero());
   std::vector<std::array<Vec3, 3>> seen;  // points of one, as the other sees them, in the rest pose's lengths
@@ -140,7 +141,7 @@ std::vector<char> gripping_frames(const TurnedClip& clip, Index one, Index other
   for (std::size_t f = 0; f < frames; ++f) {
     bool holds = seen[f][0].norm() < kNearHands * height;
     for (std::size_t g = f - std::min(f, reach); holds && g <= std::min(f + reach, frames - 1); ++g) {
-      for (std::size_t k = 0; k < 3; ++k) holds &= (seen[g][k] - seen[f][k]).norm() < kSameGrip * height;
+      for (std::size_t k = 0; k < 3; ++k) holds &= (seen[g][k] - seen[f][k]).norm() < kSameHandPose * height;
     }
     out[f] = holds ? 1 : 0;
   }
