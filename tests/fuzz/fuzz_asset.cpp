@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // fuzz_asset [--stride N] [FILE.sphc ...]
 // Opens an asset cut short at every length and with every byte and word changed in several ways, and uses whatever
-// opens. Without files: a small synthetic asset with all optional parts. With --stride: only every N-th position after the head.
+// opens. Without files: a small synthetic asset with all optional parts. With --stride: only every N-th position; all of the header if N is below 100.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -51,10 +51,10 @@ class Fuzzer {
   }
 
  private:
-  // The header and the table of sections are too small to leave a position out.
-  static constexpr std::size_t kHead = 512;
+  // The header is too small to leave a position out. A large asset's is like a small one's.
+  static constexpr std::size_t kHeader = 128, kOfSmallAssets = 100;
   static std::size_t after(std::size_t i, std::size_t step, std::size_t stride) {
-    return i + (i < kHead ? step : step * stride);
+    return i + (i < kHeader && stride < kOfSmallAssets ? step : step * stride);
   }
 
   bool cut_short(std::size_t stride) {

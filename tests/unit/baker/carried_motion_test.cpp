@@ -63,7 +63,7 @@ void check_carried(const Character& character, const BodyFrame& frame) {
   const double fps = carried->rate();
   CHECK(fps == 120);
   CHECK(clip.duration == doctest::Approx(carried->duration()).epsilon(1e-3));
-  for (double second = 0; second < carried->duration(); second += 101 / fps) {
+  for (double second = 0; second < carried->duration(); second += 307 / fps) {
     const double off = apart(character, carried->at(second / carried->duration()), sample(rig, clip, second));
     CHECK(off < kSame * frame.height);
   }
@@ -84,7 +84,7 @@ void check_carried(const Character& character, const BodyFrame& frame) {
   const std::string text = turned_recording(*carried, rig, clip, after, in_window, fps);
   const auto again = carried_motion(folder.write("again.bvh", text), rig, character.source_positions, frame, "again");
   double turned = 0;
-  for (double second = 1.5; second < 3.5; second += 7 / fps) {
+  for (double second = 1.5; second < 3.5; second += 17 / fps) {
     const Deformation wanted = sample(rig, after, second);
     CHECK(apart(character, again->at(second / again->duration()), wanted) < kSame * frame.height);
     turned = std::max(turned, apart(character, sample(rig, clip, second), wanted));

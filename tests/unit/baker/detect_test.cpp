@@ -120,15 +120,14 @@ TEST_CASE("a hand behind the head touches the head") {
 }
 
 TEST_CASE(
-    "in all 80 frames and on every target all pairs equal a brute force, and the chains' are some of them, counted "
-    "chain by "
-    "chain") {
+    "in frames of two animations and on every target all pairs equal a brute force, and the chains' are some of "
+    "them, counted chain by chain") {
   for (const Bake* bake : {&baked_human(), &paper_baked_human()}) {
     const OpenAsset asset = open_asset_of(*bake);
     for (const Radius kind : {SC_RADIUS_FIT, SC_RADIUS_DETECT}) {
       std::size_t chain_total = 0, all_total = 0, frames_touching = 0;
-      for (const AnimationFrame& frame : animation_frames()) {
-        const std::vector<Sphere> spheres = refit(asset, pack(frame.positions), kind).spheres;
+      for (std::size_t i = 3; i < animation_frames().size(); i += 4) {
+        const std::vector<Sphere> spheres = refit(asset, pack(animation_frames()[i].positions), kind).spheres;
         const spherechain::PlainResult chains = spherechain::PlainDetection(asset.view(), kind).chains(spheres.data());
         const Detected all = detect(asset, spheres, kind);
         CHECK(all.pairs == brute_force(*bake, spheres, kind));
@@ -147,7 +146,7 @@ TEST_CASE(
         all_total += all.pairs.size();
         frames_touching += all.pairs.empty() ? 0u : 1u;
       }
-      MESSAGE(fmt::format("{} refit, {} radius: {} of 80 frames touch, chains find {} of {} pairs",
+      MESSAGE(fmt::format("{} refit, {} radius: {} of 20 frames touch, chains find {} of {} pairs",
                           bake == &baked_human() ? "moments" : "paper", kind == SC_RADIUS_FIT ? "fit" : "detect",
                           frames_touching, chain_total, all_total));
       CHECK(all_total > 0);
