@@ -30,8 +30,8 @@ std::string extension_of(const std::filesystem::path& path) {
   return extension;
 }
 
-// A glTF is told by its first bytes, whatever its ending (a .vrm is a GLB). No other format begins with a JSON object.
-// Through assimp a glTF would lose its own vertex order and bind pose.
+// A glTF is recognised by its first bytes, whatever its ending (a .vrm is a GLB). No other format begins with a JSON
+// object. Through assimp a glTF would lose its own vertex order and bind pose.
 bool is_gltf(const std::filesystem::path& path) {
   std::string start(64, '\0');
   std::ifstream file(path, std::ios::binary);

@@ -26,7 +26,7 @@ void measure_f(PageSphere& out, const RestSphere& sphere, const Character& chara
   out.mean_abs_f = vertices.empty() ? 0 : sum / static_cast<double>(vertices.size());
 }
 
-// Pivots are told by their corners.
+// Pivots are recognised by their corners.
 void find_pivots(PageSphere& out, const RestSphere& sphere, const OpenAsset& asset, const Character& character) {
   for (std::uint32_t p = 0; p < sphere.pivot_count; ++p) {
     const Pivot& pivot = asset->pivots()[sphere.first_pivot + p];

@@ -15,7 +15,7 @@ namespace spherechain::baker {
 
 struct PageOptions {
   std::string title;
-  std::string motion;                                   // what the page calls a motion that is no clip
+  std::string motion;                                   // name of a motion that is not a clip
   std::string report;                                   // of read_bake_report; may be empty
   std::string validation;                               // of read_validation; may be empty
   std::string template_file;                            // the page without data, as its build made it
@@ -34,7 +34,7 @@ struct PageOptions {
 inline constexpr std::size_t kLargePageBytes = 50'000'000;
 
 // The page of `spherechain view`: the template with its data inside (baker/page/README.md describes them). `progress`
-// is told each frame before it is played. Throws Error(kFile) where the template is missing or no page, or where the
+// gets each frame before it is played. Throws Error(kFile) where the template is missing or no page, or where the
 // asset cannot tell contacts; Error(kUsage) where the page has more than `max_bytes`, before many frames are played if
 // their motion alone has.
 std::string view_page(const AnimatedAsset& animated, const PageOptions& options,

@@ -62,7 +62,7 @@ struct Validation {
   std::vector<PairGroup> by_region, by_chain;  // regions without any pair are left out
 };
 
-// The same whatever the number of threads. `progress` is told how many frames are done, one call at a time. Throws
+// The same whatever the number of threads. `progress` gets the number of finished frames, one call at a time. Throws
 // Error(kFile) where the asset has no clusters.
 Validation validate(const AnimatedAsset& animated, const ValidateSettings& settings,
                     const std::function<void(int)>& progress);
