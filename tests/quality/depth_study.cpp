@@ -29,7 +29,7 @@ using spherechain::Penetration;
 
 constexpr int kDirections = 40;
 constexpr double kMarginMetres = 0.0005;
-// Shallower ones are not judged. Files without a unit make giants and dwarfs: within parts of the height.
+// Shallower ones are not evaluated. Files without a unit make giants and dwarfs: within parts of the height.
 constexpr double kDeepMetres = 0.003, kDeepMin = 0.001, kDeepMax = 0.01;
 
 struct Tally {
@@ -143,7 +143,7 @@ class Study {
   void run(int judged) {
     const OpenAsset& asset = animated_->asset();
     const double unit = 1 / double{asset->info().metres_per_unit};
-    // Files without a unit: giants are judged as if they were people.
+    // Files without a unit: giants are evaluated as if they were people.
     const double metre = std::min(unit, double{asset->info().height});
     Player player(asset, SC_RADIUS_DETECT, false, true, SC_TARGET_BEST);
     struct Found {

@@ -129,7 +129,7 @@ TEST_CASE("what programs write otherwise is the same recording") {
   CHECK(spaced.joints[2].name == "EndSite_Bip01 L UpperArm");
 }
 
-TEST_CASE("all frames of a recording are read, and another number of them in its header is told") {
+TEST_CASE("all frames of a recording are read, and another number of them in its header is reported") {
   for (const char* stated : {"1", "4", "0", "4000000000", "-1", "many"}) {
     CAPTURE(stated);
     const BvhFile bvh = parse_bvh(with(kGood, "Frames: 3", std::string("Frames: ") + stated), "a.bvh");
@@ -176,7 +176,7 @@ TEST_CASE("joints move, turn and grow by the channels that they have, in any ord
   CHECK(moved[1].translation().isApprox(a + of_a * Vec3(0.1, 5.2, 0)));
 }
 
-TEST_CASE("what is wrong with a recording is told by line, joint and frame") {
+TEST_CASE("what is wrong with a recording is reported by line, joint and frame") {
   const std::vector<std::array<std::string, 2>> cases{
       {with(kGood, "-30", "nan"), "line 21: 'nan' in frame 2 is no number, as Zrotation of 'Chest'"},
       {with(kGood, "20 0 0", "1.#QNAN 0 0"), "line 20: '1.#QNAN' in frame 1"},

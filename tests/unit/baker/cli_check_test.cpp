@@ -223,7 +223,7 @@ TEST_CASE("--accept drops an entry of a baseline only if its fault was looked fo
   CHECK(after[5]["clip"] == "clean");
 }
 
-TEST_CASE("what is wrong with a baseline, rules or a manifest is told by file, entry and key") {
+TEST_CASE("what is wrong with a baseline, rules or a manifest is reported by file, entry and key") {
   const PlantedLibrary library({kClips[1]});
   const std::string file = library.path("baseline.json");
   REQUIRE(library.check(" --accept --baseline " + file).code == 0);
@@ -554,7 +554,7 @@ TEST_CASE("a damaged file of the cache is as good as none, and is made again" * 
   CHECK(count == 8);
 }
 
-TEST_CASE("a link to nothing and a bad baseline are told, the baseline before any work") {
+TEST_CASE("a link to nothing and a bad baseline are reported, the baseline before any work") {
   const PlantedLibrary library({kClips[1]});
   fs::create_symlink("nowhere", library.folder.path / "gone.glb");
   const tool::Run run = tool::run(

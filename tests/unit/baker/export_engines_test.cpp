@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What engines cannot hold is replaced, and said. Whether the files say the right thing tests/export judges.
+// What engines cannot hold is replaced, and said. Whether the files say the right thing is checked in tests/export.
 #include <doctest/doctest.h>
 
 #include <cmath>

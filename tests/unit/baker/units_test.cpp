@@ -185,7 +185,7 @@ TEST_CASE("a rig whose joints are bound at one place, all or most of them, has r
   }
 }
 
-TEST_CASE("a size that no such body has is told, and that of a toy, a giant or a dragon is not") {
+TEST_CASE("a size that no such body has is reported, and that of a toy, a giant or a dragon is not") {
   const std::vector<std::string> person{"head", "left hand", "right hand", "left thigh", "right thigh"},
       dragon{"head", "left wing", "right wing", "tail"};
   for (const double metres : {17.6, 176.0, 0.0176, 0.00176}) {
