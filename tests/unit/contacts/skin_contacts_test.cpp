@@ -23,7 +23,7 @@ namespace {
 baker::FrameTruth truth_of(const std::vector<float>& vertices) {
   const MovingHuman& human = moving_human();
   static const std::vector<Pair> rest = baker::find_intersections(truth_surface(), human.rest).pairs;
-  return baker::judge(
+  return baker::frame_truth(
       baker::find_intersections(truth_surface(), vertices), rest, truth_surface(),
       [&](std::uint32_t a, std::uint32_t b) { return baker::is_ignored(human.asset, a, b); },
       [](const Pair&) { return false; });
