@@ -2,7 +2,7 @@
 // Bakes, validates and prints docs/accuracy.md:
 //   scripts/accuracy.mjs build/release/bin/spherechain [CHARACTER]... [--depth CHARACTER[+MOTION]...] > docs/accuracy.md
 // Characters: the MakeHuman body of assimp-testmodels with three recordings and samples/poses; then each CHARACTER with
-// its own clips. Those after --depth are judged by depth_study. Expected beside the tool, and built by name:
+// its own clips. Those after --depth are evaluated by depth_study. Expected beside the tool, and built by name:
 //   cmake --build --preset release --target depth_study volume_study
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";

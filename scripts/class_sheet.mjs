@@ -1,6 +1,6 @@
 #!/usr/bin/env node
 // SPDX-License-Identifier: MIT
-// Draws penetrations, and contacts of the other classes, to be judged by eye:
+// Draws penetrations, and contacts of the other classes, to be classified by eye:
 //   scripts/class_sheet.mjs build/release/bin/spherechain OUT [--seed N] CHARACTER[+MOTION]...
 //   scripts/class_sheet.mjs build/release/bin/spherechain OUT --deepest CHARACTER[+MOTION]...
 // Writes 50 of each, by the seed (2), evenly over the characters, to OUT: large pictures, mixed and without

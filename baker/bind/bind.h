@@ -21,12 +21,12 @@ struct BoundPivot {
 };
 
 struct BoundSphere {
-  Ball rest;             // the refit of the rest pose: the fitted sphere, but under the paper's rule and in spikes
+  Ball rest;  // the refit in the rest pose; differs from the fitted sphere under the paper's rule and in spikes
   double detect_radius;  // at rest
   double spread;         // root mean square (paper: mean) distance of the pivots' centroids from the centre at rest
   std::vector<BoundPivot> pivots;
   double weight_sum;                 // sum of |weight|: 1 means the centre lies inside the pivots' hull
-  bool keeps_detect_radius = false;  // a person chose it
+  bool keeps_detect_radius = false;  // a person chose the detect radius
 };
 
 // Two spheres that are reported only when they are closer than rest_scale * (radius of a + radius of b). Most of them
@@ -55,7 +55,7 @@ struct BindSettings {
   double neighbour_gap = 0;      // of the height: spheres this close along the mesh are ignored, too
 };
 
-// There is none where a sphere finds no pivots. Under the rule of moments rest pairs are left to the calibration.
+// Fails if a sphere finds no pivots. Under the rule of moments, the calibration finds the rest pairs.
 Attempt<Binding> bind_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
                               const BindSettings& settings);
 
@@ -72,14 +72,14 @@ std::vector<BoundPivot> choose_pivots(const Mesh& mesh, const std::vector<Index>
                                       const Vec3& reference, RefitRule rule, int count,
                                       double magnitudes_max = kIllPosed);
 
-// For a sphere that choose_pivots() has no pivots for (in a spike of few triangles): pivots of the rule of moments
-// whose weights' magnitudes add up to at most 1.5. The centre is drawn towards them. None where there are fewer than
+// Fallback for a sphere without pivots from choose_pivots() (in a spike of few triangles): pivots of the rule of
+// moments whose absolute weights add up to at most 1.5. The centre moves towards them. Empty if there are fewer than
 // four that do not lie in a plane.
 std::vector<BoundPivot> choose_nearest_pivots(const Mesh& mesh, const std::vector<Index>& triangles,
                                               const FittedSphere& sphere, const Vec3& reference, int count);
 
-// For a sphere that choose_nearest_pivots() has none for either: the 16 triangles nearest to its centre, or all where
-// there are fewer, in equal parts. The centre is drawn to the middle of them.
+// Fallback for a sphere without pivots from choose_nearest_pivots(): the 16 triangles nearest to its centre (all if
+// there are fewer), with equal weights. The centre moves to their mean.
 std::vector<BoundPivot> choose_even_pivots(const Mesh& mesh, const std::vector<Index>& triangles,
                                            const FittedSphere& sphere);
 

@@ -13,7 +13,7 @@ namespace spherechain::baker {
 struct MovingBone {
   std::string name;
   Affine inverse_bind;
-  bool is_rest = false;  // stands for no bone: vertices that nothing moves hang on it; always the last
+  bool is_rest = false;  // a fixed stand-in for vertices that nothing moves; always the last
 };
 
 // The bones and morph targets that move the source.

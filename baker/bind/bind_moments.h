@@ -32,7 +32,7 @@ struct MomentBatch {
 // has more.
 std::vector<MomentBatch> make_batches(const std::vector<SphereMoments>& spheres);
 
-// For the runtime's refit from bones without the pivots.
+// Data for the runtime's refit from bones, which does not need the pivots.
 struct MomentBinding {
   Vec3 origin = Vec3::Zero();
   Index reference = 0;

@@ -12,7 +12,7 @@
 
 namespace spherechain::baker {
 
-// A body part is what people call it: "head", "left hand", "tail". A hand includes its fingers, a foot its toes.
+// A part of the body by its everyday name: "head", "left hand", "tail". A hand includes its fingers, a foot its toes.
 struct BodyPart {
   std::string name;  // unique
   Side side;

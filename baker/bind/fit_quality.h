@@ -17,7 +17,7 @@ struct FitQuality {
   double distance_mean, distance_p95, distance_max;  // of the skin from its sphere's surface, by area
   double far_area;                                   // share of the skin farther than kWellFitted
   double protrusion;                                 // mean distance of the spheres' outer surface from the skin
-  std::vector<double> far_of_region;                 // of each region: the share of its skin farther than that
+  std::vector<double> far_of_region;                 // by region: the share of its skin farther than kWellFitted
 
   // Regions with most of their skin far from the spheres.
   std::vector<std::uint8_t> far_regions() const;

@@ -25,7 +25,7 @@ class RandomPoses {
   // `joints`: the automatic rig's, for a character without bones. The character must outlive this.
   RandomPoses(const Character& character, const std::vector<Joint>& joints);
 
-  // Whether there is anything to move.
+  // True if there is anything to move.
   bool any() const { return !rig_.bones.empty(); }
   bool have_clips() const { return clips_ != nullptr; }
 
@@ -45,7 +45,7 @@ class RandomPoses {
     Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   };
   struct Limits {
-    Eigen::Quaterniond middle = Eigen::Quaterniond::Identity();  // what rotation vectors start from
+    Eigen::Quaterniond middle = Eigen::Quaterniond::Identity();  // reference rotation of the rotation vectors
     Range turn, translation, scale;
     bool moves = false;  // else the node keeps its transform
   };
@@ -56,9 +56,9 @@ class RandomPoses {
   };
   Moment moment_at(double part) const;
   Moment any_moment(Random& random) const;
-  // The moments of all nodes.
+  // The clip times of all nodes.
   std::vector<Moment> of_branches(Random& random) const;
-  // A moving node's transform, and what it is made of.
+  // A moving node's transform, and its components.
   struct Parts {
     explicit Parts(const Node& node)
         : rotation(node.rotation), translation(node.translation), scale(node.scale), local(node.local) {}

@@ -18,7 +18,7 @@ constexpr double kRestReachMin = 0.5;                  // of what a rest pair sh
 constexpr std::size_t kSteps = 200;
 constexpr double kStep = kSampledReach / kSteps;
 
-// Distances differ in steps, as parts of the radii's sum.
+// Distances are quantised in steps, as parts of the radii's sum.
 std::size_t step_of(double part) {
   return part > 0 ? std::min(static_cast<std::size_t>(part / kStep), kSteps - 1) : std::size_t{0};
 }

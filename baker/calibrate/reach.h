@@ -25,7 +25,7 @@ std::vector<double> best_reaches(const std::vector<SampledPair>& pairs,
 std::vector<double> radius_factors(const std::vector<SampledPair>& pairs, const std::vector<double>& reaches,
                                    const std::vector<double>& radii, const std::vector<double>& least);
 
-// In how many samples of a pair the radii times their factors report what `reach` does not, and nothing touches.
+// Counts a pair's additional false alarms: samples without contact that the scaled radii report and `reach` does not.
 std::size_t false_alarms_beyond(const SampledPair& pair, double reach, double factor_a, double factor_b);
 
 }  // namespace spherechain::baker

@@ -10,7 +10,7 @@
 
 namespace spherechain::baker {
 
-// How far the skins of two spheres are apart at rest: the least distance of a vertex of one from the other's triangles.
+// Distance of two spheres' skins at rest: the least distance of a vertex of one from the other's triangles.
 class SkinGaps {
  public:
   SkinGaps(const Mesh& skin, const Binding& binding);  // the skin must outlive it
@@ -19,11 +19,11 @@ class SkinGaps {
 
  private:
   struct SphereSkin {
-    std::unique_ptr<SurfaceQuery> surface;  // none where the sphere has no triangles
+    std::unique_ptr<SurfaceQuery> surface;  // null if the sphere has no triangles
     std::vector<Index> vertices;            // sorted
     Eigen::AlignedBox3d box;                // around its triangles
   };
-  // The least distance, or `bound` where it is no less.
+  // The least distance, at most `bound`.
   double nearest(const SphereSkin& from, const SphereSkin& to, double bound) const;
 
   const Mesh& mesh_;

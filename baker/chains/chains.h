@@ -24,7 +24,7 @@ struct Chains {
   std::size_t entries() const;
 };
 
-// Where a limb leaves the torso.
+// The place at which a limb leaves the torso.
 struct LimbPlace {
   std::uint8_t region;
   Side side;     // none: in the plane of symmetry; it counts for either side

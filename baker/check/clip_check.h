@@ -12,10 +12,10 @@
 
 namespace spherechain::baker {
 
-// Whether two poses are the same, wherever the character stands: its first bone says where.
+// True if two poses are equal except for the character's place, which its first bone gives.
 bool same_pose(const Deformation& first, const Deformation& last, const BodyFrame& axes);
 
-// A checked clip: what was found, and what the report shows of it.
+// A checked clip: its results, and the data that the report shows.
 struct ClipCheck {
   ClipResult result;
   std::string page;                   // its motion and contacts: JSON with the keys of baker/page/README.md
@@ -30,7 +30,7 @@ class ClipChecker {
   // clusters.
   ClipChecker(const AnimatedAsset& animated, Target target);
 
-  // `done` frames of `all` were looked at.
+  // Called after each frame: `done` frames of `all` have been checked.
   using Progress = std::function<void(int done, int all)>;
   // All frames of one of animated.clips().
   ClipCheck check(std::size_t clip, const Progress& progress);

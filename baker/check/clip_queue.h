@@ -16,7 +16,7 @@
 
 namespace spherechain::baker {
 
-// A character of a library, as a run takes it.
+// A character of a library in a run.
 struct ChosenCharacter {
   const LibraryCharacter* of;
   std::size_t place;
@@ -44,7 +44,7 @@ class ClipQueue {
   ClipQueue& operator=(const ClipQueue&) = delete;
 
   bool is_empty() const { return *next_ >= clips.size(); }
-  // The next one's index; not less than their number where there is none.
+  // The index of the next clip. At least the number of clips if all are taken.
   std::size_t take() { return (*next_)++; }
 
   // The file that a clip is read from.

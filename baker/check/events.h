@@ -8,19 +8,19 @@
 
 namespace spherechain::baker {
 
-// Two body parts that meet in a frame of a clip.
+// A penetration of two body parts in a frame of a clip.
 struct FramePenetration {
   int frame;
   Penetration found;
 };
 
-// Frames without a meeting that an event goes on over.
+// Largest gap, in frames without penetration, within one event.
 inline constexpr int kGapMax = 3;
 
-// Meetings of the same two parts, joined over frames: what a person would call one clipping.
+// Penetrations of the same two parts, joined over frames: one visible fault.
 struct EventSpan {
-  int from, to;                       // where an event goes over the seam of a loop, from > to
-  std::size_t deepest;                // index of its deepest meeting, the earliest of equals; ClipChecker: of its worst
+  int from, to;         // where an event goes over the seam of a loop, from > to
+  std::size_t deepest;  // index of the deepest penetration, the first of equals; ClipChecker: of the worst
   std::vector<std::size_t> meetings;  // indices, in the order of time
 };
 
@@ -29,8 +29,8 @@ struct EventSpan {
 std::vector<EventSpan> join_events(const std::vector<FramePenetration>& meetings, int frames, bool loops);
 
 // The same of a clip that has frames between its own: `numbers` has the number of each, with a fraction between two.
-// Meetings between frames join the event of whole frames that they border on, or are events of their own. Events of
-// whole frames stay apart: each is in the answer as it is without the frames between.
+// Penetrations between frames join a neighbouring event of whole frames, or form events of their own. They never join
+// two events of whole frames.
 std::vector<EventSpan> join_events(const std::vector<FramePenetration>& meetings, const std::vector<double>& numbers,
                                    bool loops);
 inline bool is_between(double number) { return number != static_cast<double>(static_cast<long>(number)); }

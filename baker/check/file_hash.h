@@ -11,10 +11,10 @@ namespace spherechain::baker {
 // A hash of a file's bytes and those of the files that it names. Throws Error(kFile) where the file cannot be read.
 std::string hash_of_input(const std::filesystem::path& file);
 
-// A key stands for what a file held before it was read: throws Interrupted where it has another hash now.
+// Checks that a file still has the contents that its key was made of. Throws Interrupted if its hash has changed.
 void check_unchanged(const std::filesystem::path& file, const std::string& hash);
 
-// Does `work`, which reads the file. If the file changed meanwhile, neither what it made nor its error stands.
+// Runs `work`, which reads the file. Throws Interrupted if the file changed meanwhile, whatever `work` did.
 template <typename Work>
 void do_unchanged(const std::filesystem::path& file, const std::string& hash, const Work& work) {
   try {

@@ -16,8 +16,8 @@ namespace spherechain::baker {
 // Two patches of a posed skin that intersect.
 struct Patches {
   std::array<std::vector<std::uint32_t>, 2> triangles;  // of each part; source numbers
-  Vec3 point;                                           // in the middle
-  Vec3 way = Vec3::Zero();                              // out of the contact
+  Vec3 point;                                           // the middle of the patches
+  Vec3 way = Vec3::Zero();                              // direction out of the contact
 };
 
 // Pictures of a character in one pose, and from where its patches are seen. Parallel light and projection, no memory of
@@ -46,7 +46,7 @@ class Picture {
     double least = -HUGE_VAL;  // along `back`: triangles that lie wholly behind it are left out
   };
   View view_from(const Vec3& back, const Vec3& middle, double extent, int width, int height) const;
-  // Into ids_ and depths_: all triangles, or those of the patches.
+  // Draws all triangles, or those of the patches, into ids_ and depths_.
   void draw(const View& view, const Patches* only = nullptr);
 
   const std::vector<Triangle>& triangles_;

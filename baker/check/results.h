@@ -15,12 +15,12 @@ namespace spherechain::baker {
 
 struct Event {
   std::array<std::string, 2> parts;
-  PenetrationClass kind = SC_CLASS_REST;   // of the deepest frame, as all that follows
+  PenetrationClass kind = SC_CLASS_REST;   // of the deepest frame, like all members below
   double from = 0, to = 0, deepest = 0;    // frames, with a fraction between two; from > to: over the seam of a loop
   int first_place = 0, place = 0;          // of `from` and `deepest` among the frames that were looked at
   double depth_mm = 0, depth_percent = 0;  // of the character's height
   double volume_ml = -1;                   // -1: not known
-  Vec3 direction = Vec3::Zero();           // part 1, moved so by `depth_mm`, is free of part 0
+  Vec3 direction = Vec3::Zero();           // moving part 1 by `depth_mm` along it frees it from part 0
   Vec3 point = Vec3::Zero();               // the deepest of part 1; the pose's space, source units
   std::optional<Vec3> eye;                 // of a fault: from the point to an eye that sees it; unit length
   std::vector<float> depths_mm;            // of a fault: in each frame of it; 0 where it is none
@@ -34,11 +34,11 @@ struct ClipResult {
   bool loops = false;
   std::vector<Event> events;  // by where they begin
   std::string note;           // what is wrong with the recording and does not keep it from being read
-  std::string unseen;         // what unseen_text says
-  bool continuous = false;    // all that touches between frames was looked at
+  std::string unseen;         // text of unseen_text()
+  bool continuous = false;    // contacts between frames were checked, too
 };
 
-// How often and how deep a triangle of the skin takes part in a fault.
+// The frequency and depth with which a triangle of the skin takes part in a fault.
 struct HeatSpot {
   std::uint32_t event;     // of the clip's
   std::uint32_t triangle;  // the source's number

@@ -17,14 +17,14 @@ enum class Severity { kError, kWarning, kIgnore };
 struct Rules {
   static constexpr double kAnyDepthMm = 1e6;
 
-  // A pair of parts that may be so deep in each other; "*" stands for any part.
+  // The depth that a pair of parts may have; "*" stands for any part.
   struct Allowed {
     std::array<std::string, 2> parts;
     double depth_mm;
   };
   std::vector<Allowed> allowed;
-  std::vector<std::string> left_out;  // parts that are not looked at
-  double max_depth_mm = 0;            // any fault may be so deep
+  std::vector<std::string> left_out;  // parts that are not checked
+  double max_depth_mm = 0;            // faults up to this depth are accepted
   Severity penetration = Severity::kError, deep_fold = Severity::kWarning;
 
   bool leaves_out(const std::array<std::string, 2>& parts) const;

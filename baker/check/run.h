@@ -20,9 +20,9 @@ struct CheckedClip {
   std::size_t character = 0;       // its place in the library
   std::size_t order = 0;           // of the clip among the character's: unit * kClipsPerUnitMax + number in it
   std::string clip;                // name; empty: of a character that has none
-  std::string error;               // what kept it from being checked: "FILE: what (what to do)"
+  std::string error;               // why it could not be checked: "FILE: what (what to do)"
   std::string key, character_key;  // in the store: of the clip, of the character
-  bool was_interrupted = false;    // the error is none of the library's: Interrupted
+  bool was_interrupted = false;    // the error does not come from the library (Interrupted)
 };
 
 // Part `index` of `count`, from 1, of a library: runs of characters and recordings of about the same size.
@@ -40,7 +40,7 @@ struct RunOptions {
 // Names that a check gives to the clips of a character's file.
 std::vector<std::string> unique_clip_names(const SourceRig& rig);
 
-// How far a run is.
+// The state of a run.
 struct RunState {
   const char* doing;  // "baking", "checking"
   std::size_t done, all;

@@ -32,7 +32,7 @@ class Store {
   std::filesystem::path folder_;
 };
 
-// The tool that computes: its version and a hash of its program. A tool of other code uses no result of this one.
+// Identifies the tool by its version and a hash of its program. Other builds do not use its results.
 const std::string& tool_identity();
 
 }  // namespace spherechain::baker

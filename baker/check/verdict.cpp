@@ -14,9 +14,9 @@ bool is_counted_only(PenetrationClass kind) {
 
 using ClipName = std::pair<std::string, std::string>;  // character, clip
 
-class Judge {
+class Evaluator {
  public:
-  Judge(const Baseline& baseline, bool folds, FailOn fail_on)
+  Evaluator(const Baseline& baseline, bool folds, FailOn fail_on)
       : all_(baseline.events), folds_(folds), fail_on_(fail_on) {
     for (std::size_t i = 0; i < all_.size(); ++i) known_[{all_[i].character, all_[i].clip}].push_back(i);
   }
@@ -111,7 +111,7 @@ void count(Summary& out, const EvaluatedClip& clip) {
 
 Verdict evaluate_clips(const std::vector<CheckedClip>& clips, const std::vector<CharacterRules>& characters,
                        const Store& store, const Baseline& baseline, bool folds, FailOn fail_on) {
-  const Judge by(baseline, folds, fail_on);
+  const Evaluator by(baseline, folds, fail_on);
   Verdict out;
   out.summary.characters = static_cast<int>(characters.size());
   std::map<std::string, CharacterResult> read;  // by key

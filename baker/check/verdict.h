@@ -16,12 +16,12 @@ namespace spherechain::baker {
 struct EvaluatedEvent {
   Event event;
   EventState state = EventState::kNew;
-  std::string rule;       // that excuses it; empty: none
-  double before_mm = -1;  // of the known event that it is the same as, but worse; -1: it is not
+  std::string rule;       // the rule that excuses it; empty: none
+  double before_mm = -1;  // depth of the known event that it repeats, if it is worse; else -1
   Severity severity = Severity::kIgnore;
   bool fails = false;
-  std::size_t number = kNoNumber;  // of the event among the clip's; a resolved one has none
-  std::size_t known = kNoNumber;   // the baseline's entry that it is the same as
+  std::size_t number = kNoNumber;  // of the event in the clip; kNoNumber for resolved events
+  std::size_t known = kNoNumber;   // the matching entry of the baseline
 
   static constexpr std::size_t kNoNumber = ~std::size_t{0};
   bool is_open() const { return state != EventState::kResolved && is_fault(event.kind) && rule.empty(); }
@@ -34,8 +34,8 @@ struct EvaluatedClip {
   int frames = 0, between = 0;  // as of a ClipResult
   double fps = 30;
   bool loops = false;
-  std::vector<EvaluatedEvent> events;       // those that are looked at, then the resolved ones
-  std::map<PenetrationClass, int> besides;  // of classes that are counted only
+  std::vector<EvaluatedEvent> events;       // the checked events, then the resolved ones
+  std::map<PenetrationClass, int> besides;  // counts of classes that are not listed
 };
 
 struct Summary {
@@ -49,8 +49,8 @@ struct Summary {
 struct Verdict {
   std::vector<EvaluatedClip> clips;
   Summary summary;
-  std::vector<std::string> notes;  // what may mislead: units, rules for parts that no character has
-  bool fails = false;              // an event does, or a file cannot be checked
+  std::vector<std::string> notes;  // possible mistakes: units, rules for unknown parts
+  bool fails = false;              // an event fails, or a file cannot be checked
 };
 
 enum class FailOn { kPenetration, kNew, kNone };

@@ -14,7 +14,7 @@ struct Ending {
   bool was_interrupted = false;  // the work threw Interrupted, or the child was killed from outside twice
 };
 
-// Work for a process of its own, so that nothing it meets can end this one.
+// Work that runs in a child process, so that a crash does not end this process.
 struct Task {
   using Tell = std::function<void(const std::string& line)>;
   std::function<void(const Tell& tell)> work;            // in the child; what it throws ends it

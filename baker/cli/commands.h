@@ -22,7 +22,7 @@ ExitCode run_bake(const BakeOptions& options);
 struct InspectOptions {
   std::string asset;  // with `roles` a character's file
   std::string character;
-  bool roles = false;  // what its rig's nodes are on the body
+  bool roles = false;  // print the roles of its rig's nodes
   bool json = false;
 };
 ExitCode run_inspect(const InspectOptions& options);

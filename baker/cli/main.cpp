@@ -194,10 +194,9 @@ int main(int argc, char** argv) {
   add_motion(*play_command, play.motion, play.frames, play.continuous);
   add_radius(*play_command, play.radius);
   play_command
-      ->add_option(
-          "--backend", play.backend,
-          "How it is computed: auto is simd, with the best instructions this machine has, where "
-          "SPHERECHAIN_TARGET names no others; cuda plays all frames at once on a GPU, from bones")
+      ->add_option("--backend", play.backend,
+                   "How it is computed: auto is simd, with the best instructions this machine has, where "
+                   "SPHERECHAIN_TARGET names no others; cuda plays all frames at once on a GPU, from bones")
       ->check(CLI::IsMember({"auto", "scalar", "simd", "cuda"}))
       ->capture_default_str();
   play_command->add_flag("--contacts", play.contacts, "List the triangles that intersect in the JSON, too");

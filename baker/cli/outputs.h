@@ -35,7 +35,7 @@ struct OutputFile {
   std::string copy_of = {};  // a file with the same bytes is no loss either
 };
 
-// Whether the command has --force: to replace a file that is somebody's.
+// True if the command has --force: it may replace files that this tool did not write.
 enum class Force { kNone, kOffered, kGiven };
 
 // The rule of every output of every command (docs/cli.md). No output is an input, a file that a mesh is read with, or

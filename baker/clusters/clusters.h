@@ -70,7 +70,7 @@ struct HullBone {
   std::array<float, 4> off;
 };
 
-// Points near whose convex hull all vertices of a sphere stay in every pose. Empty where the sphere has no clusters.
+// A hull that stays near all vertices of a sphere in every pose. Empty if the sphere has no clusters.
 struct Hull {
   std::vector<Index> points;  // of Clusters::vertices; a multiple of 16: the last one is repeated
   std::vector<HullBone> bones;

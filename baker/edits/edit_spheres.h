@@ -14,10 +14,10 @@ namespace spherechain::baker {
 struct EditsDone {
   std::size_t applied = 0;
   std::vector<std::string> missed;  // a line each: which edit was not applied, or not as it says, and why
-  std::vector<std::string> notes;   // a line each: what edits bring about that is not their aim
+  std::vector<std::string> notes;   // a line each: side effects of edits
 };
 
-// An edit that is in the spheres.
+// An edit that was applied.
 struct AppliedEdit {
   std::size_t edit;      // its place in Edits::spheres
   std::uint32_t sphere;  // the sphere it changed or added

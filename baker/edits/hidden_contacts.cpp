@@ -8,7 +8,7 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kMore = 0.02;  // less is not told
+constexpr double kMore = 0.02;  // smaller changes are not reported
 
 // For each two parts, the share of pairs of places, one on each, whose triangles never meet: their spheres are
 // neighbours, or one.

@@ -25,7 +25,7 @@ nlohmann::ordered_json& array_in(nlohmann::ordered_json& object, const std::stri
 // The entry of an object, or null.
 const nlohmann::ordered_json& entry_of(const nlohmann::ordered_json& object, const std::string& name);
 
-// Whether this tool made a thing: its name begins with kOwnName.
+// True if this tool made a thing: its name begins with kOwnName.
 inline constexpr const char* kOwnName = "spherechain ";
 bool is_own(const nlohmann::ordered_json& thing);
 

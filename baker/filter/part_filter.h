@@ -19,7 +19,7 @@ enum class PairKind {
 };
 const char* kind_name(PairKind kind);  // "adjacent", "always" ...
 
-// Whether a physics engine should test the two against each other.
+// True if a physics engine should test the two against each other.
 inline bool needs_test(PairKind kind) { return kind == PairKind::kRest || kind == PairKind::kSometimes; }
 
 struct FilteredPair {

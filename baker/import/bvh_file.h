@@ -38,7 +38,7 @@ struct BvhFile {
   std::size_t frames() const { return numbers.size() / width; }
 };
 
-// Whether a text is BVH, by its first word.
+// True if a text is BVH, by its first word.
 bool is_bvh(std::string_view text);
 
 // Reads a whole BVH file in linear time. It takes keywords in any case, names with spaces, a byte order mark, several

@@ -21,7 +21,7 @@ class Interrupted : public Error {
 // prints nothing.
 void become_child(pid_t parent, int last);
 
-// Whether a signal from outside ended a process, by its status from waitpid: a user, a batch system, or a kernel that
+// True if a signal from outside ended a process, by its status from waitpid: a user, a batch system, or a kernel that
 // is short of memory. Its own crashes are no such signals.
 bool is_killed_from_outside(int status);
 

@@ -8,11 +8,11 @@
 
 namespace spherechain::baker {
 
-// Whether assimp read a Collada file. Its nodes have an id, which is unique, and a name, which people see; either may
+// True if assimp read a Collada file. Its nodes have an id, which is unique, and a name, which people see; either may
 // be missing.
 bool is_collada(const aiScene& scene);
 
-// Whether each node has a name of its own. `scene` was read by names.
+// True if each node has a name of its own. `scene` was read by names.
 bool names_are_unique(const aiScene& scene);
 
 // The names of nodes by their ids. `by_id` and `by_name` are one file, read in both ways.

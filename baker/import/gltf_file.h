@@ -33,7 +33,7 @@ struct GltfFile {
 // Notes which pictures do not lie beside the file.
 void note_lost_pictures(const GltfFile& file, const std::filesystem::path& folder);
 
-// Reads a .gltf or .glb, by its content, with the buffers beside it. Throws Error(kFile).
+// Reads a .gltf or .glb, recognised by content, with the buffers beside it. Throws Error(kFile).
 GltfFile open_gltf(const std::filesystem::path& path);
 
 // The file's bytes, and the text of their JSON, of which nothing is checked. Both throw Error(kFile).

@@ -12,7 +12,7 @@ namespace spherechain::baker {
 
 // A primitive's parts, each as the file has it. `where` is what errors call the primitive; all throw Error(kFile).
 
-// Whether it has triangles, or strips or fans of them. All else is points and lines, which the next function counts.
+// True if it has triangles, or strips or fans of them. All else is points and lines, which the next function counts.
 bool has_triangles(const tinygltf::Primitive& primitive);
 std::size_t count_points_and_lines(const GltfFile& file, const tinygltf::Primitive& primitive);
 

@@ -81,10 +81,10 @@ Character import_character(const std::filesystem::path& path, const ImportOption
 // others.
 inline constexpr double kBodyShareMin = 0.6;
 
-// Whether the body is closed, and most of the skin.
+// True if the body is closed, and most of the skin.
 bool is_whole(const Character& character);
 
-// Whether the body's triangles are triangles of the skin, or parts of them. A wrap's are not.
+// True if the body's triangles are triangles of the skin, or parts of them. A wrap's are not.
 bool is_part_of_skin(const Character& character);
 
 // Makes the body all of the skin, its pieces as they are.

@@ -14,7 +14,7 @@ struct BoundJoint {
   Affine place;  // where the skin binds it
 };
 
-// Whether skins were bound in one space, whatever pose the file shows: each joint is as far along the one above as its
+// True if skins were bound in one space, whatever pose the file shows: each joint is as far along the one above as its
 // node is, for a pose turns joints and does not move them. False where no such joints lead from skin to skin.
 bool were_bound_in_one_space(const std::vector<Node>& nodes, const std::vector<BoundJoint>& joints);
 

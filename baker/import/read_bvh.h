@@ -7,7 +7,7 @@
 
 namespace spherechain::baker {
 
-// Whether a file is a BVH recording by its content, or says so by its ending.
+// True if a file is a BVH recording by its content, or says so by its ending.
 bool is_recording(const std::filesystem::path& path);
 
 // The joints as nodes, by their numbers, and the recording as a clip. Adds a note (notes.h) where something is wrong

@@ -19,7 +19,7 @@ const Joint& joint(const RoleJoints& joints, const std::string& role) {
   return joints.joints[static_cast<std::size_t>(joints.find(role))];
 }
 
-// A spine ends at the neck, or where nobody named it, at the head.
+// A spine ends at the neck, or at the head if there is no neck.
 const char* spine_end(const RoleJoints& joints) { return joints.find("neck") >= 0 ? "neck" : "head"; }
 
 bool has_legs_and_neck(const RoleJoints& joints) {

@@ -12,7 +12,7 @@ namespace spherechain::baker {
 // Throws Error(kFile) where there are none.
 std::vector<std::filesystem::path> sequence_files(const std::filesystem::path& folder_or_list);
 
-// Whether a path can be a pose sequence: a folder or a .txt file.
+// True if a path can be a pose sequence: a folder or a .txt file.
 bool is_sequence(const std::filesystem::path& path);
 
 // A motion given as whole meshes. All must have the rest mesh's vertices and triangles in the same order; Error(kFile)

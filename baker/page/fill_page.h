@@ -8,13 +8,13 @@
 
 namespace spherechain::baker {
 
-// The page's template, around the place where its data go. Throws Error(kFile) where it is none.
+// The page's template, split at the place for its data. Throws Error(kFile) if it is not a template.
 class PageTemplate {
  public:
   explicit PageTemplate(const std::string& file);
 
   std::string fill(const nlohmann::ordered_json& data) const;
-  // Whether the runtime is in it, which finds contacts of poses that are made in the page.
+  // True if it contains the runtime, which finds contacts of poses that are made in the page.
   bool has_runtime() const { return before_.find("data-runtime") != std::string::npos; }
   std::size_t size() const { return before_.size() + after_.size(); }
 

@@ -18,7 +18,7 @@ struct PageSphere {
   std::vector<std::uint32_t> pivots;     // of these the ones that carry it
   double mean_abs_f, max_abs_f;  // the paper's F (section 3.2) over the triangles' corners at rest; source units
 };
-// Whether the body is one with arms, which stands upright.
+// True if the body has arms, and so stands upright.
 bool has_arms(const OpenAsset& asset);
 
 std::vector<PageSphere> page_spheres(const OpenAsset& asset, const Character& character);
@@ -32,7 +32,7 @@ PageParts page_parts(const OpenAsset& asset);
 
 // Contents of one frame. Triangles are source triangle numbers.
 struct PageFrame {
-  std::vector<std::array<std::uint32_t, 2>> contacts;  // triangles of the skin that intersect
+  std::vector<std::array<std::uint32_t, 2>> contacts;   // triangles of the skin that intersect
   std::vector<Penetration> penetrations;                // deepest first
   std::vector<float> spheres;                           // a sphere's x, y, z, fit radius, detect radius
   std::vector<std::array<std::uint16_t, 2>> fit_pairs;  // spheres that touch at these radii

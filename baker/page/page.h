@@ -15,7 +15,7 @@ namespace spherechain::baker {
 
 struct PageOptions {
   std::string title;
-  std::string motion;                                   // what the page calls a motion that is no clip
+  std::string motion;                                   // name of a motion that is not a clip
   std::string report;                                   // of read_bake_report; may be empty
   std::string validation;                               // of read_validation; may be empty
   std::string template_file;                            // the page without data, as its build made it

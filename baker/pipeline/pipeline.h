@@ -82,7 +82,7 @@ struct Bake {
   std::vector<VertexWeights> rig_weights;  // to the joints, of every source vertex; none where the source has bones
   BodyParts body_parts;
   FitQuality quality;
-  EditsDone edits_done;  // what became of settings.edits
+  EditsDone edits_done;  // results of settings.edits
   BoneBinding bones;
   MomentBinding moments;
   Clusters clusters;
@@ -105,9 +105,9 @@ enum class Wraps : std::uint8_t { kUnmoved, kAll };
 Attempt<Segmentation> segment_character(Character& character, const Roles& roles, const SegmentSettings& settings,
                                         Wraps wraps);
 
-// A character with its spheres, and what carries them.
+// A character with its spheres and their pivots.
 struct FittedCharacter {
-  Character character;  // its body is what was segmented
+  Character character;  // with the body that was segmented
   Segmentation segmentation;
   Spheres spheres;
   Binding binding;

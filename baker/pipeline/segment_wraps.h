@@ -17,7 +17,7 @@ struct SegmentedWrap {
   std::string strategy;  // which wrap it is
 };
 
-// Whether the regions are what a character most likely has: a biped's, where the settings do not say another body.
+// True if the regions are what a character most likely has: a biped's, where the settings do not say another body.
 bool is_expected(const Regions& regions, const SegmentSettings& settings);
 
 // Segments wraps of the skin by their shape, finer and coarser ones, until one is good. The best becomes the body.

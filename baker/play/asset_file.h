@@ -24,7 +24,7 @@ class OpenAsset {
   OpenAsset(OpenAsset&&) = default;
   OpenAsset& operator=(OpenAsset&&) = default;
 
-  // The runtime's, and what it holds.
+  // The runtime's asset, and its contents.
   const Model& model() const { return model_; }
   const sc_asset* handle() const { return &model_.asset(); }
   operator const sc_asset&() const { return model_.asset(); }

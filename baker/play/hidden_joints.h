@@ -27,7 +27,7 @@ class HiddenJoints {
 };
 
 // A note on all that the frames of a clip do not show: hidden joints, and the keys after the first where the clip is
-// over before its second frame. Empty where there is nothing to tell.
+// over before its second frame. Empty if there is no note.
 std::string unseen_text(const HiddenJoints& hidden, const ClipFrames& clip);
 
 }  // namespace spherechain::baker

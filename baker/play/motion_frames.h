@@ -31,7 +31,7 @@ struct MotionFrame {
   int number = 0;        // at `fps`, from the start of its clip
   double seconds = 0;    // from the start of its clip
   double time = 0;       // seconds from the start of the first clip
-  double between = 0;    // how far on the way to the next number, for what touches between two frames; else 0
+  double between = 0;    // share of the way to the next number, for contacts between two frames; else 0
   double along = 0;      // of a motion that is not made of clips: from 0, its start, to 1, its end
 };
 

@@ -26,7 +26,7 @@ struct MotionChoice {
   std::string name() const;  // for people
 };
 
-// An asset, the mesh it was baked from, and the motion to play: what every command that animates starts with.
+// An asset, the mesh it was baked from, and the motion to play. Every command that animates starts with it.
 class AnimatedAsset {
  public:
   // Throws Error(kFile) where a file has the wrong content, or the source is not the asset's.
@@ -51,7 +51,7 @@ class AnimatedAsset {
   const std::string& file() const { return asset_name_; }  // the asset's, as it was given
   const OpenAsset& asset() const { return file_; }
   const Character& character() const { return character_; }
-  // Reads the source again. Nothing where that fails: it is only looked at.
+  // Reads the source again to show its look. Empty if that fails.
   SourceLook look() const;
   // Throws Error(kFile) where the asset has no clusters, which skin contacts are found with.
   void check_clusters() const;

@@ -41,7 +41,7 @@ class Player {
     std::vector<Pair> pairs;
     double us;                              // median of a few runs
     std::vector<Penetration> penetrations;  // deepest first
-    double measure_us;                      // what measuring them costs
+    double measure_us;                      // time to measure them
   };
   // `is_next`: this pose follows the last one in its clip, and directions may follow that one's.
   TriangleDetection detect_triangles(const sc_pose& pose, bool is_next);

@@ -14,7 +14,7 @@ namespace spherechain::baker {
 
 class AnimatedAsset;
 
-// Whether a penetration is of these two parts, whichever goes in.
+// True if a penetration is of these two parts, whichever goes in.
 inline bool are_of(const Penetration& found, std::uint32_t part_a, std::uint32_t part_b) {
   return std::minmax(found.part, found.other) == std::minmax(part_a, part_b);
 }
@@ -35,7 +35,7 @@ class BonePose {
 // Whole meshes as poses have no bones.
 bool moved_by_bones(const OpenAsset& asset, const Deformation& deformation);
 
-// The same where bones move the asset, else the deformed vertices. Every command asks so, as games do: vertices that
+// The same if bones move the asset, else the deformed vertices. Every command does this, as games do: vertices that
 // are skinned elsewhere differ in their last bits, and so may a contact that hardly is one.
 class SkinPose {
  public:
@@ -71,7 +71,7 @@ class SkinPlayer {
   // The pose that all questions below are about. Its memory must stay as it is until the next.
   void set_pose(const sc_pose& pose);
 
-  // The number of pairs of body parts in contact: what a game asks.
+  // The number of pairs of body parts in contact, as a game queries it.
   std::size_t count_contacts();
   // The triangles that intersect, and those that intersect another body's. A list holds until the next question.
   Span<const TriangleContact> triangles(Scope scope = SC_SCOPE_APART) { return triangles(nullptr, scope); }
@@ -83,7 +83,7 @@ class SkinPlayer {
   const std::vector<Penetration>& measure(const SkinPlayer& other, bool is_next) { return measure(&other, is_next); }
   // The same by the quick form, as games do; of some pairs of body parts alone, or of all.
   const std::vector<Penetration>& measure_quickly(const PartPairBits* pairs = nullptr);
-  // Two body parts alone, in full, whatever came before; nothing where they do not intersect.
+  // Measures two body parts alone, in full, without history. Empty if they do not intersect.
   std::optional<Penetration> measure_parts(std::uint32_t part_a, std::uint32_t part_b);
 
  private:

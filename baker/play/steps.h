@@ -32,8 +32,8 @@ class StepPlayer {
   std::vector<StepContact> contacts_;
 };
 
-// Puts a frame between two of a clip's own wherever body parts touch on the way that touch in neither of them, about
-// where they are deepest in each other: MotionFrame::between. `progress` is called with each frame.
+// Inserts a frame between two of a clip's own if body parts touch only between them, about where they are deepest:
+// MotionFrame::between. `progress` is called with each frame.
 void look_between_frames(AnimatedAsset& animated, Target target, std::size_t clip,
                          const std::function<void(int)>& progress);
 // Adds the contacts between frames, for all clips that play.

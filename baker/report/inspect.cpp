@@ -186,9 +186,8 @@ std::string inspect_text(const OpenAsset& asset) {
                      info.vertex_count, info.triangle_count, info.source_sha256);
   out += fmt::format("settings {}\n         sha256 {}\n", info.settings, info.settings_sha256);
   out += fmt::format("refit    {}\n", refit_name(asset->refit_rule()));
-  out += fmt::format("spheres  {}, {} chain entries, {} pairs ignored, {} joints\n",
-                     asset->spheres().size, count_chain_entries(asset), count_ignored(asset),
-                     asset->joint_count());
+  out += fmt::format("spheres  {}, {} chain entries, {} pairs ignored, {} joints\n", asset->spheres().size,
+                     count_chain_entries(asset), count_ignored(asset), asset->joint_count());
   out += fmt::format("bones    {}, {} morph targets\n", asset->bone_count(), asset->morph_count());
   if (const MomentTables& moments = asset->moment_tables(); moments.moments.size > 0) {
     out += fmt::format("moments  {} batches of {} bone pairs; spheres: {} bones, {} pairs, {} bytes\n",

@@ -6,7 +6,7 @@
 
 namespace spherechain::baker {
 
-// A frame's number: whole, but for what lies between two frames.
+// A frame's number: an integer, or a fraction between two frames.
 inline nlohmann::ordered_json number_json(double number) {
   if (number == std::floor(number)) return static_cast<long>(number);
   return std::round(100 * number) / 100;

@@ -15,7 +15,7 @@ namespace spherechain::baker {
 struct PartRow {
   std::string name;
   Side side;
-  std::string bone;  // that it follows; empty where there is none
+  std::string bone;  // the bone that it follows; empty: none
   std::size_t triangles;
 };
 

@@ -20,9 +20,7 @@ constexpr std::size_t kWorstMisses = 20;
 const char* radius_name(Radius radius) { return radius == SC_RADIUS_FIT ? "fit" : "detect"; }
 
 // The subject of the figures that have no name of their own.
-const char* reported_name(const ValidateSettings& settings) {
-  return settings.skin ? "skin" : "all_pairs";
-}
+const char* reported_name(const ValidateSettings& settings) { return settings.skin ? "skin" : "all_pairs"; }
 
 // Null where there is nothing to share.
 ordered_json share_json(const std::optional<double>& share) {

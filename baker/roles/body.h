@@ -20,7 +20,7 @@ struct Body {
   std::vector<int> trunk, neck_head;  // as in Roles
 };
 
-// Whether each node is the node, or above it.
+// Marks the node and all nodes above it.
 std::vector<bool> at_or_above(const Skeleton& skeleton, int node);
 
 Body find_body(const Skeleton& skeleton, const std::vector<Hint>& hints, BodyKind wanted);

@@ -17,7 +17,7 @@ struct Skeleton {
   std::vector<Vec3> position;
   std::vector<double> weight;  // sum of the vertex weights
   std::vector<Vec3> skin;      // weighted centroid of the vertices it moves; its position where it moves none
-  // Whether the node or one below it moves skin. True for all nodes where there are no weights (motion capture).
+  // True if the node or one below it moves skin. True for all nodes where there are no weights (motion capture).
   std::vector<bool> alive;
   std::vector<int> joint;     // the joint that a node belongs to that is none itself (joint_parts.h); -1 for others
   std::vector<double> reach;  // length of the longest path down to a tip that is alive

@@ -56,7 +56,7 @@ inline constexpr std::array<const char*, 5> kRegionNames{"left_arm", "right_arm"
 // The number of ends of the long branches; a biped has five.
 std::size_t count_ends(const CurveSkeleton& skeleton);
 
-// Whether the long branches are a biped's: two go on from the lower end of the spine, three leave the upper one.
+// True if the long branches are a biped's: two go on from the lower end of the spine, three leave the upper one.
 bool looks_like_biped(const CurveSkeleton& skeleton);
 
 // `facing` chooses the sign of `axis`, whose name for people is `name`. Returns a reason where the two are more than 72

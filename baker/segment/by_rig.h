@@ -12,7 +12,7 @@ namespace spherechain::baker {
 // a trunk between them, or where the settings ask for another body or facing.
 Attempt<Regions> segment_by_rig(const Character& character, const Roles& roles, const SegmentSettings& settings);
 
-// Whether less than half of the limbs' skin is of its limb's largest piece: rings around such limbs have gaps anywhere.
+// True if less than half of the limbs' skin is of its limb's largest piece: rings around such limbs have gaps anywhere.
 bool limbs_are_in_shards(const Mesh& skin, const Regions& regions);
 
 }  // namespace spherechain::baker

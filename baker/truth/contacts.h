@@ -18,7 +18,7 @@ std::vector<Pair> find_contacts(const OpenAsset& asset, const std::vector<float>
 
 // The same from the matrices of bones and the morphs' weights alone, for an asset that bones move.
 struct ContactsFromBones {
-  std::vector<float> positions;         // where the runtime has the source vertices: what it decided on
+  std::vector<float> positions;  // the runtime's positions of the source vertices, which its results are based on
   std::vector<Pair> pairs, neighbours;  // of the two scopes; sorted
 };
 ContactsFromBones find_contacts_from_bones(const OpenAsset& asset, const Character& character,

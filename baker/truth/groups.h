@@ -9,7 +9,7 @@
 
 namespace spherechain::baker {
 
-// A part of all pairs: what is true, what of it is found, what is reported.
+// Counts for a group of pairs: true pairs, true pairs that were found, reported pairs.
 struct PairGroup {
   std::string name;
   std::size_t true_pairs = 0, found_pairs = 0;  // triangle pairs

@@ -27,7 +27,7 @@ Intersections find_intersections(const TruthSurface& surface, const std::vector<
 std::vector<Pair> find_intersections(const TruthSurface& a, const std::vector<float>& positions_a,
                                      const TruthSurface& b, const std::vector<float>& positions_b);
 
-// Whether a triangle of the one list (places in the surface) is closer than `distance` to one of the other.
+// True if a triangle of the one list (places in the surface) is closer than `distance` to one of the other.
 bool any_closer(const TruthSurface& surface, const std::vector<float>& positions, const std::vector<Index>& one,
                 const std::vector<Index>& other, double distance);
 

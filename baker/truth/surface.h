@@ -23,10 +23,10 @@ struct TruthSurface {
 // Throws Error(kInternal) where the asset's triangles are not some of the character's.
 TruthSurface surface_of(const OpenAsset& asset, const Character& character);
 
-// Whether two triangles share a corner at rest: neighbours on the mesh, never a contact.
+// True if two triangles share a corner at rest: neighbours on the mesh, never a contact.
 bool are_neighbours(const Triangle& a, const Triangle& b);
 
-// Whether the asset never reports a pair of spheres.
+// True if the asset never reports a pair of spheres.
 bool is_ignored(const OpenAsset& asset, std::uint32_t a, std::uint32_t b);
 
 }  // namespace spherechain::baker

@@ -47,8 +47,8 @@ struct Validation {
   // frame is.
   ContactErrors contacts, neighbour_contacts;
   std::optional<ContactErrors> contacts_from_bones, neighbour_contacts_from_bones;
-  Score skin;               // of the pairs of spheres whose skins intersect
-  Score all_pairs;          // of the pairs of spheres that touch
+  Score skin;                        // of the pairs of spheres whose skins intersect
+  Score all_pairs;                   // of the pairs of spheres that touch
   std::vector<PairGroup> by_region;  // regions without any pair are left out
 };
 

@@ -10,7 +10,7 @@
 #include "play/asset_file.h"
 #include "volumes/volume.h"
 
-// A character as rigid bodies: what every export is made from.
+// A character as rigid bodies, the source of every export.
 namespace spherechain::baker {
 
 // A body part that moves rigidly with one bone. Its frame stands where the bone does at rest, turned as the bone is,
@@ -36,7 +36,7 @@ struct IgnoredBodies {
 };
 
 struct Colliders {
-  std::string source_file;     // what the character was read from, without its folder
+  std::string source_file;     // the character's file, without its folder
   double metres_per_unit = 1;  // of its file
   double height = 0;           // metres
   Vec3 left, up, forward;      // the character's own axes in the rest pose; orthonormal, left x up = forward

@@ -36,7 +36,7 @@ struct BoxVolume {
 
 using Volume = std::variant<BallVolume, ConeVolume, EllipsoidVolume, BoxVolume>;
 
-// "sphere", "capsule" (a cone of equal radii), "cone", "ellipsoid", "box": what capsules.json and people call it.
+// The name in capsules.json and in texts: "sphere", "capsule" (a cone of equal radii), "cone", "ellipsoid", "box".
 const char* volume_name(const Volume& volume);
 
 // From the surface to the point, negative inside. Of an ellipsoid an approximation, exact on its surface.
@@ -53,7 +53,7 @@ Volume moved(const Volume& volume, const Eigen::AffineCompact3d& by);
 // Its surface farther out by so many metres, or farther in; no radius is below a tenth of a millimetre.
 Volume padded(const Volume& volume, double by);
 
-// Whether two volumes, each moved rigidly into one space, share a point. Exact to about 1e-9 m.
+// True if two volumes, each moved rigidly into one space, share a point. Exact to about 1e-9 m.
 bool overlap(const Volume& a, const Eigen::Isometry3d& a_to_world, const Volume& b,
              const Eigen::Isometry3d& b_to_world);
 

@@ -19,7 +19,7 @@ enum class BodySource : std::uint8_t {
 struct ClosingReport {
   BodySource body = BodySource::kSkin;
   // Repair: defects of the skin.
-  std::size_t welded = 0;       // border vertices that all but coincided
+  std::size_t welded = 0;       // border vertices that nearly coincided
   std::size_t t_junctions = 0;  // vertices that an edge was split at
   std::size_t turned = 0;       // triangles that faced the other way than those around them
   std::size_t parted = 0;       // edges of more than two triangles

@@ -12,7 +12,7 @@ namespace spherechain::baker {
 // holes. Where that is not closed or not most of the skin the body stays as it was, and the reason is returned.
 std::optional<Reason> repair_body(Character& character, ClosingReport& report);
 
-// Whether the body is all of the skin, but for so little that a wrap of the skin could not show another limb.
+// True if the body is all of the skin, but for so little that a wrap of the skin could not show another limb.
 bool covers_skin(const Character& character);
 
 // Vertices of a border that are closer than this were one. In the mesh's units.

@@ -17,7 +17,7 @@ struct Wrap {
   WrapSize size;
   double thin;  // share of its area with nothing but offset behind it: cloth, or it has got inside through a hole
 
-  // Whether so much is thin that the wrap lines the skin from inside. Capes and hair are thin, too, but smaller.
+  // True if so much is thin that the wrap lines the skin from inside. Capes and hair are thin, too, but smaller.
   bool lines_skin() const;
 };
 

@@ -15,7 +15,7 @@ std::string own_name(const char* ending);
 inline constexpr const char* kTemporaryEnding = ".tmp";  // a file
 inline constexpr const char* kWorkEnding = ".work";      // a folder
 
-// Whether own_name() made a name.
+// True if own_name() made a name.
 bool is_own_name(const std::string& name);
 
 // Takes the lock of what was opened under `path`. False where another process has it, or has deleted what was there.

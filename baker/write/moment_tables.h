@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bones of an asset, and what refit from bones reads.
+// Writes the bones of an asset, and the tables for the refit from bones.
 #pragma once
 
 #include <vector>

@@ -11,7 +11,7 @@ enum class FileKind { kAsset, kJson, kSarif, kJunit, kPage, kGlb, kBvh, kCollide
 // "an asset", "a page".
 const char* kind_text(FileKind kind);
 
-// Whether writing to `file` loses nothing of anybody's: it is not there, is empty, is written directly (a device), or
+// True if writing to `file` destroys no foreign data: it is not there, is empty, is written directly (a device), or
 // holds the mark of this tool as it writes it into files of this kind, or has the bytes of `copy_of`. A BVH file has no
 // room for a mark.
 bool is_own_file(const std::filesystem::path& file, FileKind kind, const std::filesystem::path& copy_of = {});

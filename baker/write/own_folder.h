@@ -38,7 +38,7 @@ class OwnFolder {
 
   // Before it is written: a run that is killed leaves nothing that the next one does not know.
   void add_to_list(const std::string& name, const std::string& hash);
-  // Whether `name` has these bytes already. Throws where it is somebody's.
+  // True if `name` has these bytes already. Throws if this tool did not write it.
   bool is_there(const std::string& name, const std::string& hash) const;
 
   std::filesystem::path folder_;

@@ -96,9 +96,8 @@ std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<Pair
   }
   std::vector<flatbuffers::Offset<schema::Part>> parts;
   for (const BodyPart& part : in.parts.parts) {
-    parts.push_back(
-        schema::CreatePartDirect(builder, part.name.c_str(), static_cast<schema::Side>(part.side), part.bone,
-                                  part.parent, part.mobility));
+    parts.push_back(schema::CreatePartDirect(builder, part.name.c_str(), static_cast<schema::Side>(part.side),
+                                             part.bone, part.parent, part.mobility));
   }
   const std::vector<flatbuffers::Offset<schema::Bone>> bones = create_bones(builder, in.bones);
   const auto moments = create_moments(builder, in.moments);
@@ -139,12 +138,11 @@ std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<Pair
   const auto rest_detect_at = builder.CreateVectorOfStructs(rest_detect);
   const auto joints_at = builder.CreateVector(joints);
   const auto bones_at = builder.CreateVector(bones);
-  builder.Finish(
-      schema::CreateAsset(builder, kFormatVersion, provenance, source, frame,
-                          static_cast<schema::Refit>(in.binding.rule), fit, regions_at, parts_at, spheres_at, pivots_at,
-                          chains_at, ignored_at, rest_fit_at,
-                          rest_detect_at, joints_at, bones_at, morphs, moments, skin),
-      schema::AssetIdentifier());
+  builder.Finish(schema::CreateAsset(builder, kFormatVersion, provenance, source, frame,
+                                     static_cast<schema::Refit>(in.binding.rule), fit, regions_at, parts_at, spheres_at,
+                                     pivots_at, chains_at, ignored_at, rest_fit_at, rest_detect_at, joints_at, bones_at,
+                                     morphs, moments, skin),
+                 schema::AssetIdentifier());
   return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
 }
 

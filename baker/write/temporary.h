@@ -19,7 +19,7 @@ class Temporary {
   Temporary& operator=(const Temporary&) = delete;
 
   bool is_open() const { return file_ >= 0; }  // else errno says why
-  // Each false, with errno, where it fails.
+  // Each returns false and sets errno if it fails.
   bool write(std::string_view bytes);
   bool flush_to_disk();
   bool rename_to_target();
@@ -32,7 +32,7 @@ class Temporary {
   int file_ = -1;
 };
 
-// Writes all of `bytes` to a descriptor. False, with errno, where that fails.
+// Writes all of `bytes` to a descriptor. Returns false and sets errno on failure.
 bool write_all(int file, std::string_view bytes);
 
 }  // namespace spherechain::baker

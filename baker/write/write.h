@@ -35,7 +35,7 @@ struct AssetSource {
 // The bytes of a .sphc file: the same for the same input. Throws Error(kInternal) should the runtime not open them.
 std::vector<std::uint8_t> serialize(const AssetSource& source);
 
-// Whether bytes go straight to what `path` names: a pipe, a device, or what the program was started with under the name
+// True if bytes go straight to what `path` names: a pipe, a device, or what the program was started with under the name
 // of a descriptor (/dev/stdout), which a rename would take away from everybody.
 bool is_written_directly(const std::filesystem::path& path);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Judges the runtime's depth, direction and volume on characters in motion, against brute force and CGAL: a table in
+// Evaluates the runtime's depth, direction and volume on characters in motion, against brute force and CGAL: a table in
 // Markdown, one row a character. docs/accuracy.md holds it.
 //   depth_study [--list] [--judged N] CHARACTER[+MOTION]...
 #include <fmt/format.h>
@@ -29,18 +29,18 @@ using spherechain::Penetration;
 
 constexpr int kDirections = 40;
 constexpr double kMarginMetres = 0.0005;
-// Shallower ones are not judged. Files without a unit make giants and dwarfs: within parts of the height.
+// Shallower ones are not evaluated. Files without a unit make giants and dwarfs: within parts of the height.
 constexpr double kDeepMetres = 0.003, kDeepMin = 0.001, kDeepMax = 0.01;
 
 struct Tally {
   std::map<spherechain::PenetrationClass, int> classes;
-  int frames = 0, judged = 0, freed = 0, freed_early = 0, within = 0, steps = 0, flips = 0;
+  int frames = 0, evaluated = 0, freed = 0, freed_early = 0, within = 0, steps = 0, flips = 0;
   int volumes = 0, volumes_within = 0;
   std::vector<double> us, quick;  // quick: that form's depth over the full one's
 
   void add(const Tally& other) {
     for (const auto& [kind, count] : other.classes) classes[kind] += count;
-    frames += other.frames, judged += other.judged, freed += other.freed, freed_early += other.freed_early;
+    frames += other.frames, evaluated += other.evaluated, freed += other.freed, freed_early += other.freed_early;
     within += other.within, steps += other.steps, flips += other.flips;
     volumes += other.volumes, volumes_within += other.volumes_within;
     us.insert(us.end(), other.us.begin(), other.us.end());
@@ -124,7 +124,7 @@ struct Posed {
 
 class Study {
  public:
-  Study(const std::string& character, int judged, bool list) : list_(list) {
+  Study(const std::string& character, int evaluated, bool list) : list_(list) {
     const std::size_t plus = character.find('+');
     mesh_ = character.substr(0, plus);
     MotionChoice motion;
@@ -135,15 +135,15 @@ class Study {
         .write(reinterpret_cast<const char*>(baked.asset.data()), static_cast<std::streamsize>(baked.asset.size()));
     animated_.emplace(file.string(), mesh_, motion, FrameChoice{});
     std::filesystem::remove(file);
-    run(judged);
+    run(evaluated);
   }
   const Tally& tally() const { return tally_; }
 
  private:
-  void run(int judged) {
+  void run(int evaluated) {
     const OpenAsset& asset = animated_->asset();
     const double unit = 1 / double{asset->info().metres_per_unit};
-    // Files without a unit: giants are judged as if they were people.
+    // Files without a unit: giants are evaluated as if they were people.
     const double metre = std::min(unit, double{asset->info().height});
     Player player(asset, SC_RADIUS_DETECT, SC_TARGET_BEST);
     struct Found {
@@ -186,7 +186,7 @@ class Study {
       }
       last = found.penetrations;
     }
-    const std::size_t count = std::min(all.size(), static_cast<std::size_t>(judged));
+    const std::size_t count = std::min(all.size(), static_cast<std::size_t>(evaluated));
     for (std::size_t k = 0; k < count; ++k) {
       const Found& found = all[k * all.size() / count];
       evaluate(found.frame, found.what, metre);
@@ -205,7 +205,7 @@ class Study {
     const quality::Parts parts = posed.parts(rule);
     const quality::Exit way = quality::shortest_way(parts, kDirections, margin);
     const double ratio = depth / way.depth;
-    ++tally_.judged;
+    ++tally_.evaluated;
     tally_.freed += frees;
     tally_.freed_early += frees_early;
     tally_.within += ratio <= 1.25;
@@ -266,8 +266,8 @@ void print_row(const std::string& name, const Tally& t) {
   const auto volumes = t.volumes == 0 ? std::string("-") : fmt::format("{} of {}", t.volumes_within, t.volumes);
   fmt::print("| {} | {} | {} {} {} {} {} {} | {} | {} | {} | {} | {} | {} | {:.2f}, {:.2f} | {:.2f}, {:.2f} |\n", name,
              t.frames, of(SC_CLASS_REST), of(SC_CLASS_SHELL), of(SC_CLASS_TOUCH), of(SC_CLASS_FOLD),
-             of(SC_CLASS_DEEP_FOLD), of(SC_CLASS_PENETRATION), t.judged, share(t.freed, t.judged),
-             share(t.freed_early, t.judged), share(t.within, t.judged), share(t.flips, t.steps), volumes,
+             of(SC_CLASS_DEEP_FOLD), of(SC_CLASS_PENETRATION), t.evaluated, share(t.freed, t.evaluated),
+             share(t.freed_early, t.evaluated), share(t.within, t.evaluated), share(t.flips, t.steps), volumes,
              quantile(t.quick, 0.5), quantile(t.quick, 0.9), quantile(t.us, 0.5) / 1000, quantile(t.us, 0.95) / 1000);
   std::fflush(stdout);
 }
@@ -276,13 +276,13 @@ void print_row(const std::string& name, const Tally& t) {
 
 int main(int argc, char** argv) {
   std::vector<std::string> characters;
-  int judged = 40;
+  int evaluated = 40;
   bool list = false;
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--list") == 0) {
       list = true;
     } else if (std::strcmp(argv[i], "--judged") == 0 && i + 1 < argc) {
-      judged = std::atoi(argv[++i]);
+      evaluated = std::atoi(argv[++i]);
     } else {
       characters.emplace_back(argv[i]);
     }
@@ -297,7 +297,7 @@ int main(int argc, char** argv) {
   Tally total;
   for (const std::string& character : characters) {
     try {
-      const Study study(character, judged, list);
+      const Study study(character, evaluated, list);
       print_row(std::filesystem::path(character).filename().string(), study.tally());
       total.add(study.tally());
     } catch (const std::exception& error) {

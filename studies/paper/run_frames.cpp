@@ -4,10 +4,10 @@
 #include <chrono>
 
 #include "pairs/detect_job.h"
-#include "studies/plain_detection.h"
 #include "play/asset_file.h"
 #include "refit/refit_job.h"
 #include "statistics.h"
+#include "studies/plain_detection.h"
 
 namespace spherechain::paper {
 namespace {

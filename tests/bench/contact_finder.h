@@ -36,7 +36,7 @@ class ContactFinder {
 struct ContactMesh {
   explicit ContactMesh(const PosedCharacter& character);
 
-  // Whether the runtime looks for this pair: of two spheres that are not ignored, and no neighbours.
+  // True if the runtime looks for this pair: of two spheres that are not ignored, and no neighbours.
   bool is_wanted(std::uint32_t a, std::uint32_t b) const;
   // The corner of a triangle (by its place in source_triangles) in a pose.
   const float* corner(const ContactPose& pose, std::size_t triangle, std::size_t k) const {

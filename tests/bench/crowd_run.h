@@ -16,7 +16,7 @@ class CrowdRun {
   CrowdRun(const CrowdRun&) = delete;  // the job points into this
 
   void run();
-  // Whether the last run found for each instance the pairs that a DetectJob finds.
+  // True if the last run found for each instance the pairs that a DetectJob finds.
   bool has_the_pairs_of(const PosedCharacter& character) const;
 
  private:

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // engines.mjs TOOL POSED_COLLIDERS ENGINE_COLLIDERS SAMPLES: rebuilds bodies from what was written for each engine and
-// compares Jolt's answers, of made-up bodies and of Debian's character, which the tool itself exports, too.
+// checks them with Jolt, of made-up bodies and of Debian's character, which the tool itself exports, too.
 // Then POSES SHAPE FILE [MOTION...]: of any character; without MOTION in its own clips.
 import { execFileSync, spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
-import { compareEngines } from './engine_judge.mjs';
+import { compareOverlaps } from './engine_overlaps.mjs';
 import * as godot from './godot.mjs';
 import * as unity from './unity.mjs';
 import * as unreal from './unreal.mjs';
@@ -28,7 +28,7 @@ function check(name, poses, shape, ...more) {
   for (const [engine, { shapes, ending, rebuild }] of Object.entries(engines)) {
     if (!shapes.includes(shape)) continue;
     const { bodies, ignored } = rebuild(join(folder, `${engine}.${ending}`), file);
-    console.log(compareEngines(`${name} ${shape}: ${engine}`, bodies, ignored, ours, file));
+    console.log(compareOverlaps(`${name} ${shape}: ${engine}`, bodies, ignored, ours, file));
   }
 }
 

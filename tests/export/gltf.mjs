@@ -3,8 +3,8 @@
 import fs from 'node:fs';
 import path from 'node:path';
 import { person } from './person.mjs';
-import { checkSchemas, judgePhysics } from './judge_physics.mjs';
-import { judgeVrm } from './judge_vrm.mjs';
+import { checkSchemas, checkPhysics } from './check_physics.mjs';
+import { checkVrm } from './check_vrm.mjs';
 import { posedColliders, run } from './poses.mjs';
 import { readGlb } from './glb.mjs';
 
@@ -19,14 +19,14 @@ async function physics(source, format, shape, count = 0) {
   const file = `${folder}/${format}.glb`, ours = posedColliders(program, asset, source, shape, count, 200);
   write(format, shape, count)(source, file);
   const hasSchemas = checkSchemas(file, format);
-  const { result, overlaps } = await judgePhysics(file, format, ours);
+  const { result, overlaps } = await checkPhysics(file, format, ours);
   if (overlaps === 0) throw new Error(`nothing overlaps: ${result}`);
   console.log(`${path.basename(source)} ${format} ${shape}: ${result}${hasSchemas ? '' : ' (SKIPPED: schemas, which SPHERECHAIN_TEST_DATA has)'}`);
 }
 
 async function vrm(source, version, shape, count = 0) {
   const ours = posedColliders(program, asset, source, shape, count, 5);
-  console.log(`${path.basename(source)} vrm ${version} ${shape}: ${await judgeVrm(source, folder, ours, write('vrm', shape, count), version === 0)}`);
+  console.log(`${path.basename(source)} vrm ${version} ${shape}: ${await checkVrm(source, folder, ours, write('vrm', shape, count), version === 0)}`);
 }
 
 if (sources.length > 0) {

@@ -4,7 +4,7 @@ import fs from 'node:fs'
 
 const models = '/usr/share/assimp/models'
 
-// Arguments of a comparison: TOOL POSED_COLLIDERS [ASSET SOURCE [SHAPE AT_MOST [MOTION]]]. Without an asset the human of
+// Arguments of each script: TOOL POSED_COLLIDERS [ASSET SOURCE [SHAPE AT_MOST [MOTION]]]. Without an asset the human of
 // assimp's models, as the tool's own preview writes it, boxing.
 export function character(shapeOfFormat, poses) {
   const [tool, posedColliders, asset, source, shape, atMost, motion] = process.argv.slice(2)
@@ -77,7 +77,7 @@ export function check(is, what) {
   process.exitCode = 1
 }
 
-// Counts pairs of parts, pose by pose, about which a foreign engine and we agree.
+// Counts pairs of parts, pose by pose, for which a foreign engine and we agree.
 export class Verdicts {
   constructor(title) { Object.assign(this, { title, all: 0, alike: 0, ours: 0, theirs: 0, parts: new Map() }) }
   add(name, ours, theirs) {

@@ -68,7 +68,7 @@ const approximations = new Map(files.all(srdf, 'link_sphere_approximation').map(
 
 // The two YAML files: each against its schema and the URDF beside it, then as the spheres that a planner has.
 const ajv = new Ajv()
-function compare(title, linkSpheres, ignores) {
+function compareOverlaps(title, linkSpheres, ignores) {
   const verdicts = new r.Verdicts(title)
   const disabled = new Set(Object.entries(ignores).flatMap(([a, others]) => others.flatMap(b => [`${a} ${b}`, `${b} ${a}`])))
   check([...linkSpheres.keys(), ...Object.keys(ignores), ...Object.values(ignores).flat()].every(link => urdf.links.has(link)), title + ': links are of the URDF')
@@ -98,8 +98,8 @@ for (const { parts: [a, b] } of one.json.ignored) {
   const [i, j] = [a, b].map(part => one.identifiers[one.json.bodies.findIndex(body => body.part === part)])
   ;(ours[i] ??= []).push(j)
 }
-compare('URDF', new Map([...urdf.links].filter(([, link]) => link.spheres.length).map(([name, link]) => [name, link.spheres])), ours)
-compare('SRDF', approximations, ours)
+compareOverlaps('URDF', new Map([...urdf.links].filter(([, link]) => link.spheres.length).map(([name, link]) => [name, link.spheres])), ours)
+compareOverlaps('SRDF', approximations, ours)
 
 one.export('xrdf', 'planner.xrdf')
 check(fs.readFileSync('planner.urdf', 'utf8') === text || one.shape !== 'spheres', 'XRDF: the URDF is that of --to urdf')
@@ -107,7 +107,7 @@ const xrdf = conforms(files.xrdfSchema, 'planner.xrdf')
 check(xrdf.collision.geometry in xrdf.geometry && xrdf.self_collision.geometry === xrdf.collision.geometry, 'XRDF: its geometry is there')
 check(same(xrdf.cspace.joint_names, movable) && xrdf.cspace.acceleration_limits.length === movable.length && xrdf.cspace.jerk_limits.length === movable.length, 'XRDF: cspace is the joints')
 check(xrdf.tool_frames.every(link => urdf.links.has(link)), 'XRDF: tool frames are links')
-compare('XRDF', new Map(Object.entries(xrdf.geometry[xrdf.collision.geometry].spheres)), xrdf.self_collision.ignore)
+compareOverlaps('XRDF', new Map(Object.entries(xrdf.geometry[xrdf.collision.geometry].spheres)), xrdf.self_collision.ignore)
 
 one.export('curobo', 'planner.yml')
 const { kinematics } = conforms(files.curoboSchema, 'planner.yml').robot_cfg
@@ -115,4 +115,4 @@ check(fs.existsSync(kinematics.urdf_path), 'cuRobo: the URDF is beside it')
 check([kinematics.ee_link, kinematics.base_link, ...kinematics.link_names].every(link => urdf.links.has(link)), 'cuRobo: links are of the URDF')
 check(same(kinematics.collision_link_names, Object.keys(kinematics.collision_spheres)), 'cuRobo: a link has spheres')
 check(same(kinematics.cspace.joint_names, movable) && ['retract_config', 'null_space_weight', 'cspace_distance_weight'].every(key => kinematics.cspace[key].length === movable.length), 'cuRobo: cspace is the joints')
-compare('cuRobo', new Map(Object.entries(kinematics.collision_spheres)), kinematics.self_collision_ignore)
+compareOverlaps('cuRobo', new Map(Object.entries(kinematics.collision_spheres)), kinematics.self_collision_ignore)

@@ -15,25 +15,25 @@ execFileSync(process.argv[4], [folder, '1', 'boxes']);
 const page = `<!doctype html>
 <script type="importmap">{"imports": {"three": "/node_modules/three/build/three.module.js", "three/": "/node_modules/three/"}}</script>
 <script type="module">
-const answer = (text) => fetch('/answer', { method: 'POST', body: text });
+const report = (text) => fetch('/report', { method: 'POST', body: text });
 const plain = (node) => ({ name: node.primName, matrix: [...node.localMatrix], children: node.children.map(plain) });
 try {
   const { TinyUSDZLoader } = await import('/node_modules/tinyusdz/TinyUSDZLoader.js');
   const loader = new TinyUSDZLoader();
   await loader.init();
-  answer(JSON.stringify(plain((await loader.loadAsync('/usd.usda')).getDefaultRootNode())));
+  report(JSON.stringify(plain((await loader.loadAsync('/usd.usda')).getDefaultRootNode())));
 } catch (error) {
-  answer(JSON.stringify({ error: error + ' ' + (error.cause ?? '') }));
+  report(JSON.stringify({ error: error + ' ' + (error.cause ?? '') }));
 }
 </script>`;
 
 const types = { '.js': 'text/javascript', '.wasm': 'application/wasm' };
 const server = createServer((request, reply) => {
   if (request.url === '/') return reply.setHeader('content-type', 'text/html').end(page);
-  if (request.url === '/answer') {
+  if (request.url === '/report') {
     let text = '';
     request.on('data', (some) => (text += some));
-    return request.on('end', () => { reply.end(); server.emit('answer', text); });
+    return request.on('end', () => { reply.end(); server.emit('report', text); });
   }
   const file = request.url === '/usd.usda' ? join(folder, 'usd.usda') : join('.', request.url);
   try {
@@ -48,7 +48,7 @@ const child = spawn('chromium', ['--headless', '--no-sandbox', '--disable-gpu', 
   `http://127.0.0.1:${server.address().port}/`], { stdio: 'ignore' });
 const answer = await new Promise((done) => {
   child.on('error', () => done('missing'));
-  server.on('answer', done);
+  server.on('report', done);
   setTimeout(() => done('{"error": "the browser says nothing"}'), 60000).unref();
 });
 if (child.pid !== undefined) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // fuzz_asset [--stride N] [FILE.sphc ...]
 // Opens an asset cut short at every length and with every byte and word changed in several ways, and uses whatever
-// opens. Without files: a small synthetic asset with all optional parts. With --stride: only every N-th position; all of the header if N is below 100.
+// opens. Without files: a small synthetic asset with all optional parts. With --stride: only every N-th position; all
+// of the header if N is below 100.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Two bodies, the ground and scenes: results are checked where that is quick, and hostile calls are refused.
+// Two bodies, the ground and scenes: what they find is checked where that is fast, and hostile calls are refused.
 #include <algorithm>
 #include <cmath>
 

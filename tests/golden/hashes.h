@@ -50,9 +50,9 @@ class HashTable {
   void expect(bool holds, const char* what, const std::string& how);
 
   const std::vector<std::string>& lines() const { return lines_; }
-  // Whether all ways agreed and all expectations held.
+  // True if all ways agreed and all expectations held.
   bool agrees() const { return agrees_; }
-  // Whether the file has these lines and no others. Prints those that differ.
+  // True if the file has these lines and no others. Prints those that differ.
   bool is_that_of(const std::string& file) const;
 
  private:

@@ -65,8 +65,7 @@ class Builder {
     schema::FinishAssetBuffer(
         fb_, schema::CreateAsset(fb_, parts_.format_version, provenance, source, frame,
                                  static_cast<schema::Refit>(parts_.refit), fit, regions, body_parts, spheres, pivots,
-                                 chains, ignored, rest_fit, rest_detect, joints, bones,
-                                 morphs, moments, skin));
+                                 chains, ignored, rest_fit, rest_detect, joints, bones, morphs, moments, skin));
     return {fb_.GetBufferPointer(), fb_.GetBufferPointer() + fb_.GetSize()};
   }
 

@@ -6,11 +6,11 @@
 #include <cstring>
 #include <vector>
 
-#include "simd/simd.h"
-#include "skin/skin_table.h"
 #include "depth/penetration_jobs.h"
 #include "pairs/detect_job.h"
 #include "refit/refit_job.h"
+#include "simd/simd.h"
+#include "skin/skin_table.h"
 #include "spherechain/spherechain.h"
 #include "step/step_job.h"
 

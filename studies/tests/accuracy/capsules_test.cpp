@@ -8,10 +8,10 @@
 #include <random>
 
 #include "baked_human.h"
+#include "capsules.h"
 #include "human.h"
 #include "motion/poses.h"
 #include "temporary_folder.h"
-#include "capsules.h"
 
 using namespace spherechain::baker;
 using spherechain::Pair;

@@ -9,8 +9,8 @@
 #include "baked_human.h"
 #include "human.h"
 #include "jobs.h"
-#include "studies/plain_detection.h"
 #include "pair_rule.h"
+#include "studies/plain_detection.h"
 
 using namespace spherechain::baker;
 using spherechain::Pair;
@@ -120,4 +120,3 @@ TEST_CASE("with larger radii more is reported, rest pairs at their distance as b
     CHECK(PairRule(asset, SC_RADIUS_DETECT, {scale, {}}).pairs(rest).empty());
   }
 }
-

@@ -66,4 +66,3 @@ TEST_CASE("refit by moments follows the best-fit sphere of the deformed skin ove
   CHECK(Errors::p95(moments.center) < 10);
   CHECK(Errors::mean(moments.radius) < 0.015);
 }
-

@@ -176,7 +176,7 @@ TEST_CASE("joints move, turn and grow by the channels that they have, in any ord
   CHECK(moved[1].translation().isApprox(a + of_a * Vec3(0.1, 5.2, 0)));
 }
 
-TEST_CASE("errors of a recording name line, joint and frame") {
+TEST_CASE("what is wrong with a recording is reported by line, joint and frame") {
   const std::vector<std::array<std::string, 2>> cases{
       {with(kGood, "-30", "nan"), "line 21: 'nan' in frame 2 is no number, as Zrotation of 'Chest'"},
       {with(kGood, "20 0 0", "1.#QNAN 0 0"), "line 20: '1.#QNAN' in frame 1"},

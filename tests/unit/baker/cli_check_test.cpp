@@ -223,7 +223,7 @@ TEST_CASE("--accept drops an entry of a baseline only if its fault was looked fo
   CHECK(after[5]["clip"] == "clean");
 }
 
-TEST_CASE("errors of a baseline, rules or a manifest name file, entry and key") {
+TEST_CASE("what is wrong with a baseline, rules or a manifest is reported by file, entry and key") {
   const PlantedLibrary library({kClips[1]});
   const std::string file = library.path("baseline.json");
   REQUIRE(library.check(" --accept --baseline " + file).code == 0);

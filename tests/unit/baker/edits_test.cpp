@@ -198,8 +198,8 @@ TEST_CASE("where edits make neighbours of two parts, their contacts that are lef
   for (const std::uint32_t a : left) {
     for (const std::uint32_t b : right) after.ignored.push_back(std::minmax(a, b));
   }
-  const auto reported = hidden_contacts(human.character, human.body_parts, human.binding, after);
-  CHECK(std::any_of(reported.begin(), reported.end(), [](const std::string& line) {
+  const auto lines = hidden_contacts(human.character, human.body_parts, human.binding, after);
+  CHECK(std::any_of(lines.begin(), lines.end(), [](const std::string& line) {
     return contains(line, "left hand and right hand: ") && contains(line, "100 % of the two skins, before 0 %");
   }));
 }
@@ -398,7 +398,7 @@ TEST_CASE("two parts ignore each other: all of their triangles, and no other par
   }
 }
 
-TEST_CASE("edits as JSON: what is written is read again, and each fault names its field") {
+TEST_CASE("edits as JSON: what is written is read again, and each fault is reported by its field") {
   const char* whole = R"({"spherechain_edits": 1, "spheres": [
     {"region": "left_arm", "from": {"along": 0.5, "across": [0, 0.1], "radius": 0.1},
      "to": {"along": 0.6, "across": [0, 0.1], "radius": 0.1, "detect_radius": 0.12}}],

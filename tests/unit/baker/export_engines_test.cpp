@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shapes that engines cannot hold are replaced, and reported. Whether the files say the right thing tests/export
-// judges.
+// Shapes that engines cannot hold are replaced, and reported. tests/export checks that the files are right.
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -90,10 +90,10 @@ double winding_number(const Mesh& mesh, const std::vector<Index>& triangles, con
       const auto &from = to[i], &next = to[(i + 1) % 3];
       cosines[i] = from[0] * next[0] + from[1] * next[1] + from[2] * next[2];
     }
-    const double volume = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-                          a[2] * (b[0] * c[1] - b[1] * c[0]);
-    angle += 2 * std::atan2(volume, far[0] * far[1] * far[2] + cosines[0] * far[2] + cosines[1] * far[0] +
-                                        cosines[2] * far[1]);
+    const double volume =
+        a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+    angle += 2 * std::atan2(volume,
+                            far[0] * far[1] * far[2] + cosines[0] * far[2] + cosines[1] * far[0] + cosines[2] * far[1]);
   }
   return angle / (4 * std::numbers::pi);
 }

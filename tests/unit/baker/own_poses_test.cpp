@@ -60,9 +60,10 @@ SourceRig bent_leg() {
 
 TEST_CASE("a pose file takes poses from its own folder alone") {
   for (const char* out : {"../poses.json", "/tmp/poses.json", "a/../../poses.json", "..\\\\poses.json"}) {
-    CHECK_MESSAGE(refusal_of("{\"rig\": \"own\", \"poses\": [\"" + std::string(out) + "\"]}").find("poses.json', which is ") !=
-                      std::string::npos,
-                  out);
+    CHECK_MESSAGE(
+        refusal_of("{\"rig\": \"own\", \"poses\": [\"" + std::string(out) + "\"]}").find("poses.json', which is ") !=
+            std::string::npos,
+        out);
   }
 }
 

@@ -26,7 +26,7 @@ TEST_CASE("without names, shape gives a human and a fox the roles their names gi
   }
 }
 
-TEST_CASE("arms and legs are distinguished whichever of them the rig's root is nearer to") {
+TEST_CASE("arms and legs are recognised whichever of them the rig's root is nearer to") {
   const NamedRig rig = nameless(named_rig(R"(
 Chest = chest
   Neck = neck

@@ -9,7 +9,7 @@ export const CLAY = '#c9c2b6';
 export const GHOST = '#6d7278';
 export const POINTED = '#f0e442';
 export const EDITED = { changed: '#e69f00', added: '#009e73', deleted: '#d41f2c' };
-// Paul Tol's bright palette: lines over the colours above, named at their ends too.
+// Paul Tol's bright palette: lines over the colours above, recognised by their names at the ends too.
 export const CHAINS = ['#4477aa', '#ee6677', '#228833', '#ccbb44', '#66ccee', '#aa3377'];
 
 export const regionColour = (region) => (region < 0 ? SPHERE : REGIONS[region % REGIONS.length]);

@@ -104,7 +104,7 @@ function place(parts, { position, rotation }, scale) {
 }
 
 // Throws with the first difference. `ignored`: pairs of names of parts. Returns figures for a person.
-export function compareEngines(name, bodies, ignored, ours, file) {
+export function compareOverlaps(name, bodies, ignored, ours, file) {
   const byPart = new Map(bodies.map((body) => [body.part, body]));
   const same = 1e-5 * ours.height;
   let worst = 0;

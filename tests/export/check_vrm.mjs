@@ -147,7 +147,7 @@ async function loadSprings(file, Plugin) {
 
 // `write(source, out)` exports. Throws where something else of the file changed, a second export changes the first, a
 // collider is off by more than 1e-5 of the height, or a spring swings into one.
-export async function judgeVrm(source, folder, ours, write, isVrm0 = false, Plugin = VRMSpringBoneLoaderPlugin) {
+export async function checkVrm(source, folder, ours, write, isVrm0 = false, Plugin = VRMSpringBoneLoaderPlugin) {
   const plain = `${folder}/plain.vrm`, sprung = `${folder}/sprung.vrm`, file = `${folder}/export.vrm`, again = `${folder}/again.vrm`;
   write(source, plain);
   await validate(plain);

@@ -1,5 +1,5 @@
 // KHR_physics_rigid_bodies and OMI_physics_body as a reader of the specification has them: bodies rebuilt from the file
-// alone, posed by three.js, their overlaps judged by Jolt Physics.
+// alone, posed by three.js, their overlaps found by Jolt Physics.
 import fs from 'node:fs';
 import path from 'node:path';
 import Ajv from 'ajv/dist/2020.js';
@@ -147,7 +147,7 @@ const reach = ({ points, radii }) => {
 
 // Compares each pose. Throws where a transform is off by more than 1e-5 of the height, or fewer than 99.9 % of the pairs
 // agree.
-export async function judgePhysics(file, format, ours) {
+export async function checkPhysics(file, format, ours) {
   await validate(file);
   const { json } = readGlb(file);
   check(!(json.extensionsRequired ?? []).some((name) => /physics|shape/.test(name)), 'an extension is required');
