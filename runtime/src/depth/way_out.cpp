@@ -175,7 +175,8 @@ Exit shortest_exit(Sweep& sweep, const Contour& contour, const ExitSettings& set
     }
     if (!search.has_any() || search.best().way.depth > likely_shortest) {
       for (int k = 0; k < 27; ++k) {
-        search.refine(double(k % 3 - 1) * axes[0] + (double(k / 3 % 3 - 1) * axes[1] + double(k / 9 - 1) * axes[2]), 0);
+        const int x = k % 3 - 1, y = k / 3 % 3 - 1, z = k / 9 - 1;
+        search.refine(double(x) * axes[0] + (double(y) * axes[1] + double(z) * axes[2]), 0);
       }
     }
   };
