@@ -1,4 +1,4 @@
-# Files that a game with crowds on the GPU links besides the runtime: `cmake --install <build> --component cuda`.
+# What a game with crowds on the GPU links besides the runtime: `cmake --install <build> --component cuda`.
 # spherechainConfig.cmake (runtime/) finds it there.
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/spherechain)
 install(TARGETS spherechain_cuda EXPORT spherechain_cuda ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT cuda)

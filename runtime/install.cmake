@@ -1,4 +1,4 @@
-# Files that a game links: `cmake --install <build> --component sdk` installs this and nothing of the baker. In a
+# What a game links: `cmake --install <build> --component sdk` installs this and nothing of the baker. In a
 # shared build the components runtime and dev are the same in two parts, for Debian's packages: what programs run with, and
 # what they are built with. Not with CUDA: its targets may refer to one export of the runtime alone.
 include(CMakePackageConfigHelpers)

@@ -44,7 +44,7 @@ SPHERECHAIN_HD void set_bits(std::uint32_t* to, std::uint32_t value) { atomicOr(
 // For several lanes that write the same value.
 SPHERECHAIN_HD void set_alike(std::uint32_t& to, std::uint32_t value) { to = value; }
 
-// The place of the lowest bit that is set; `word` is not 0.
+// Of a word that is not 0.
 SPHERECHAIN_HD std::uint32_t lowest_bit(std::uint32_t word) { return __ffs(static_cast<int>(word)) - 1; }
 
 SPHERECHAIN_HD std::uint32_t count_bits(std::uint32_t word) { return static_cast<std::uint32_t>(__popc(word)); }

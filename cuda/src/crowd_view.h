@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The data that a block of the crowd's kernels sees: the table's entries, a group's pointers, and the block's own
-// memory.
+// What a block of the crowd's kernels sees: the table's entries, a group's pointers, and the block's own memory.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Checks that the FlatBuffers verifier cannot make of an asset: that indices point at something and figures are
-// figures.
+// What the FlatBuffers verifier cannot know of an asset: that indices point at something and figures are figures.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +26,7 @@ bool skin_values_are_valid(const AssetView& asset, SkinSizes& sizes, Message& me
 // of an asset that is valid otherwise.
 bool figures_are_in_range(const AssetView& asset, std::size_t size, Message& message);
 
-// The number of floats in a float, or in a struct that holds nothing but floats.
+// Of a float, or of a struct that holds nothing but floats.
 template <typename Floats>
 bool is_finite(const Floats& value) {
   static_assert(sizeof(Floats) % sizeof(float) == 0 && alignof(Floats) == alignof(float));

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The contents of an open sc_asset: spans into the asset's bytes. Private to this repository: runtime, cuda, baker,
-// tests.
+// What an open sc_asset holds: spans into the asset's bytes. Private to this repository: runtime, cuda, baker, tests.
 #pragma once
 
 #include <cstddef>

@@ -34,7 +34,7 @@ class Stream {
     return last_ >= 0 && last_ <= 0xFFFFFFFF;
   }
 
-  // Reads the next number of a stream that was verified.
+  // Of a stream that was verified.
   std::uint32_t next() {
     std::uint32_t value = 0;
     read(value);

@@ -129,8 +129,7 @@ Status find_contacts(sc_body& body, const sc_body* other, const sc_query& query,
   return run_contacts(body, query, lists_all, is_round, job);
 }
 
-// Contacts of a body with itself are kept from question to question. Those with another body are not: it may be gone,
-// with a new one in its place.
+// Of a body with itself they are kept from question to question. Another body may be gone, with a new one in its place.
 Status know_contacts(sc_body& body, const sc_body* other, const sc_query& query) {
   const bool is_kept = other == nullptr && query.filter == nullptr && query.part_pairs == nullptr;
   if (is_kept && body.has_contacts && body.contacts_scope == query.scope) {

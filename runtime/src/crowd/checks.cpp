@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxCount = 0xFFFFFFFFU;  // products of counts cannot wrap
 
-// The bytes of one instance's bones.
+// What the bones of one instance take.
 std::size_t instance_bytes(const AssetView& asset, const CrowdJob& job) {
   return (asset.bone_count() - 1) * bone_stride(job.pose) + size_of(job.pose.bone_layout);
 }

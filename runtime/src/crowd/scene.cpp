@@ -105,7 +105,7 @@ struct SphereList {
   std::size_t count = 0;
   float x[kAtATime], y[kAtATime], z[kAtATime], radius[kAtATime];
 
-  // Lists the body's spheres, from `first` on, that reach into the box, until the list is full. Returns where it ended.
+  // Those of a body, from `first` on, that reach into the box, until there is no room; gives where it ended.
   std::size_t fill(const PlacedBody& body, std::size_t first, const Box& box) {
     count = 0;
     for (; first < body.sphere_count() && count < kAtATime; ++first) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Measures the skin of a body that is below a plane, or below ground over it, part by part.
+// What of a body is below a plane, or below ground over it, part by part.
 #include <algorithm>
 #include <cmath>
 
@@ -39,7 +39,7 @@ struct Height {
   double above;
 };
 
-// The piece of a part's skin that is below the ground.
+// What of a part's skin is below.
 class Below {
  public:
   Below(const Double3& up, double handedness) : up_(up), handedness_(handedness) {}

@@ -58,7 +58,7 @@ struct PosedSkin {
   }
 };
 
-// The skins that meet: one body's with itself, or two bodies'. Places and vertices are those of the body's own surface.
+// Whose skins meet: one body's with itself, or two bodies'. Places and vertices are those of the body's own surface.
 struct Skins {
   const PosedSkin &a, &b;
 

@@ -47,13 +47,13 @@ class Sweep {
   // Likewise, of moves in that direction alone.
   void keep_on_way(const Double3& direction, double depth);
 
-  // Returns how far the contour's own triangles block the way: it is at least so long. Ends at `bound`.
+  // What the contour's own triangles block of the way: it is at least so long. Ends at `bound`.
   double find_by_contour(const Double3& direction, const Contour& contour, double bound, WayOut& out);
   // False where the way is not shorter than `bound`: then `out` is the pair that said so.
   bool find(const Double3& direction, const Contour& contour, double bound, WayOut& out);
   // Is b, moved so, inside a, or a inside b? `outwards`: -1 where the skins are inside out.
   bool is_enclosed(const Double3& direction, const WayOut& way, const Contour& contour, double outwards);
-  // The volume of b inside a, seen along the direction of a way that long; or of the outer layers of both alone.
+  // Of b inside a, seen along the direction of a way that long; or of the outer layers of both alone.
   Volume volume(const Double3& direction, double depth, bool of_outer_layers);
 
  private:
@@ -98,11 +98,11 @@ class Sweep {
   void look_along(const Double3& direction);
   // Boxes of all blocks that can block a way longer than `depth`.
   void see_boxes(double depth);
-  struct Reach {
+  struct Room {
     Double3 up, down;  // along each axis
   };
-  void keep(const Reach& reach);
-  void keep_runs(const Side& side, const Side& other, const Reach& reach, Boxes& out);
+  void keep(const Room& room);
+  void keep_runs(const Side& side, const Side& other, const Room& room, Boxes& out);
   void widen_blocks(const PosedSkin& skin, const TriangleRun& run, Boxes& out) const;
   bool may_block(std::uint32_t a, std::uint32_t b, double depth) const;
   void block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) const;

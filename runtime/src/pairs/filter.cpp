@@ -6,7 +6,7 @@
 namespace spherechain {
 namespace {
 
-// Checks the arguments of each function that writes.
+// What each function that writes asks first.
 Status check_edit(const sc_asset* asset, const Filter* filter) {
   if (asset == nullptr || filter == nullptr) {
     return refuse(SC_NULL, asset == nullptr ? SC_FIELD_ASSET : SC_FIELD_FILTER);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The spheres and tables that a detect job looks at.
+// What a detect job looks at.
 #pragma once
 
 #include "pairs/pair_lists.h"

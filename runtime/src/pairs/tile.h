@@ -87,7 +87,7 @@ struct Tile {
 
 struct FoundPairs;
 
-// The form in which a caller wants the pairs that touch.
+// What a caller wants of the pairs that touch.
 class PairOutput {
  public:
   PairOutput(Span<Pair> list, Span<std::uint64_t> bits) : list_(list), bits_(bits) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The inputs of refit by moments. Kernels use the spans' pointers alone: they are compiled once a target and may use no
+// What refit by moments reads. Kernels use the spans' pointers alone: they are compiled once a target and may use no
 // inline function of the headers.
 #pragma once
 
@@ -22,7 +22,7 @@ struct RefitInputs {
 // SC_OK where the pose's bones refit this open asset.
 Status check_refit_bones(const AssetView& asset, const Pose& pose, Radius radius);
 
-// The inputs of a checked pose. For further characters of one asset change `matrices`.
+// Of a checked pose. For further characters of one asset change `matrices`.
 RefitInputs refit_inputs(const AssetView& asset, const Pose& pose, Radius radius);
 
 void refit_from_moments(const RefitInputs& inputs, Target resolved, Sphere* spheres);

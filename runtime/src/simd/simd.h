@@ -20,8 +20,7 @@ bool find_target(const char* name, Target& target) noexcept;
 // Floats a vector register of that target holds: 1, 4, 8 or 16; 0 where it is not supported.
 std::size_t lanes_of(Target target) noexcept;
 
-// Finds the target that a job's `target` stands for on this machine. Returns false if the machine lacks it; `resolved`
-// is then not written.
+// What a job's `target` stands for on this machine. False where it cannot be had; `resolved` is then not written.
 bool resolve_target(Target wanted, Target& resolved) noexcept;
 
 // The forms of `kernel`, by the number of the target, for those this build has: of constant size, since which are

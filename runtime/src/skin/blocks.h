@@ -23,7 +23,7 @@ namespace HWY_NAMESPACE {
 constexpr std::size_t kBlock = kMaxClusterTriangles;  // a bit each
 static_assert(kBlock == 64);
 
-// The sides of the box that each vertex of the cluster is beyond: a bit a side. At least 16 codes, and a
+// Of each vertex of the cluster, the sides of the box that it is beyond of: a bit a side. At least 16 codes, and a
 // vector more than there are vertices, can be written and read.
 using Codes = std::uint8_t[256 + 64];
 
@@ -46,7 +46,7 @@ HWY_INLINE void find_sides(const ContactScene& scene, std::size_t cluster_index,
 
 #if HWY_TARGET == HWY_SCALAR
 
-// The triangles of these corners, at most kBlock, whose corners are not all beyond one side.
+// Of the triangles of these corners, at most kBlock, those not all beyond one side.
 HWY_INLINE std::uint64_t within(const std::uint8_t* corners, std::size_t count, std::size_t, const Codes& codes) {
   std::uint64_t bits = 0;
   for (std::size_t i = 0; i < count; ++i) {

@@ -35,7 +35,7 @@ inline HWY_NOINLINE void bound_by_bones(const ContactScene& scene) {
   }
 }
 
-// A box around the intersections of that box with all spheres' boxes.
+// What all spheres' boxes have in common with that box, in a box.
 inline HWY_NOINLINE Box narrow(const ContactScene& scene, const Box& room) {
   Box out = kEmptyBox;
   for (std::size_t s = 0; s < scene.sphere_count; ++s) {

@@ -23,7 +23,7 @@ HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
-// Pairs of triangles of a register of one block and a register of another, by their places there.
+// Of triangles of a register of one block and a register of another, by their places there.
 using PlacePairs = PairList<kLanes * kLanes>;
 
 // Lane k: triangle j + k of `other` has a corner where one of `block` has one at rest.
@@ -80,8 +80,7 @@ HWY_NOINLINE bool pair_registers(const BlockPair& blocks, std::size_t i, std::si
   for (std::size_t k = 0; k < places.count; k += kLanes) {
     const std::size_t left = places.count - k;
     std::uint64_t bits = ~std::uint64_t{0} >> (64 - (left < kLanes ? left : kLanes));
-    const Verdicts verdicts =
-        classify_pairs(GatheredTriangles(block, i, places.a + k), GatheredTriangles(other, j, places.b + k), bits);
+    const Verdicts verdicts = judge(Taken(block, i, places.a + k), Taken(other, j, places.b + k), bits);
     for (bits &= ~verdicts.apart; bits != 0; bits &= bits - 1) {
       const std::size_t lane = lowest_bit(bits);
       const std::size_t one = i + static_cast<std::size_t>(places.a[k + lane]);
@@ -125,7 +124,7 @@ HWY_NOINLINE bool pair_clusters(const Bodies& bodies, std::size_t a, std::size_t
          pair_triangles({block, other, bodies.a.neighbours, bodies.are_one && a == b}, bodies.a.first_only, collector);
 }
 
-// Pairs of clusters that wait to be decided together.
+// Of clusters, waiting to be decided together.
 struct ClusterPairs : PairList<512> {
   Pair spheres{~0U, ~0U};  // whose clusters were paired last
   bool touch = false;      // do they?
@@ -244,7 +243,7 @@ HWY_INLINE std::uint64_t paired(const Bodies& bodies, std::size_t first, std::si
   return bits & (~std::uint64_t{0} >> (64 - (count < 64 ? count : 64)));
 }
 
-// Pairs of spheres, b's and a's, that wait for their clusters to be paired.
+// Of b and a, waiting for their clusters to be paired.
 using SpherePairs = PairList<512>;
 
 HWY_NOINLINE void pair_spheres(const Bodies& bodies, SpherePairs& spheres, ClusterPairs& clusters,

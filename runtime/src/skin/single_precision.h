@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The answers that single precision can give about pairs of triangles.
+// What single precision can tell of pairs of triangles.
 #include "simd/highway.h"
 
 #if defined(SPHERECHAIN_SKIN_SINGLE_PRECISION_H) == defined(HWY_TARGET_TOGGLE)  // once a target
@@ -45,12 +45,12 @@ HWY_INLINE Vector plane_error(const Vector3& extent) {
 }
 
 // Some of a register of triangles of a block, in any order.
-struct GatheredTriangles {
+struct Taken {
   const Block* block;
   std::size_t first;  // of the register
   hn::Vec<hn::Rebind<std::int32_t, Floats> > which;
 
-  HWY_INLINE GatheredTriangles(const Block& from, std::size_t begin, const std::int32_t* places)
+  HWY_INLINE Taken(const Block& from, std::size_t begin, const std::int32_t* places)
       : block(&from), first(begin), which(hn::LoadU(hn::Rebind<std::int32_t, Floats>(), places)) {}
   HWY_INLINE Vector of(const float* column) const {
     constexpr Floats kFloats;
@@ -82,13 +82,13 @@ struct Sides {
     const Vector most = hn::Max(hn::Max(distances[0], distances[1]), distances[2]);
     return hn::Or(hn::Gt(least, error), hn::Lt(most, hn::Neg(error)));
   }
-  // The lanes in which each corner's side is certain.
+  // None is on a side that is not certain.
   HWY_INLINE LaneMask known(Vector error) const {
     return hn::And(hn::And(hn::Gt(hn::Abs(distances[0]), error), hn::Gt(hn::Abs(distances[1]), error)),
                    hn::Gt(hn::Abs(distances[2]), error));
   }
-  // Turns the corners, whose sides are known, until the one that is alone on its side is the first. Returns the lanes
-  // in which that one is below.
+  // Of known sides: turns the corners until the one that is alone on its side is the first. Returns where that is
+  // below.
   HWY_INLINE LaneMask put_alone_first(Vector3 (&corners)[3]) const {
     constexpr Floats kFloats;
     const Vector zero = hn::Zero(kFloats);
@@ -104,14 +104,13 @@ struct Sides {
   }
 };
 
-// The answers that single precision can give about pairs of triangles.
+// What single precision can tell of pairs of triangles.
 struct Verdicts {
   std::uint64_t apart, meeting;
 };
 
 // Each lane's two triangles, as exact_crossing.h does it. Lanes that are not wanted may be left open.
-HWY_INLINE Verdicts classify_pairs(const GatheredTriangles& first, const GatheredTriangles& second,
-                                   std::uint64_t wanted) {
+HWY_INLINE Verdicts judge(const Taken& first, const Taken& second, std::uint64_t wanted) {
   Vector3 a[3] = {first.corner(0), first.corner(1), first.corner(2)};
   Vector3 b[3] = {second.corner(0), second.corner(1), second.corner(2)};
   Vector extents[3];

@@ -16,7 +16,7 @@
 namespace spherechain {
 namespace {
 
-// The beginning of a table. The bytes of another asset may have come to lie at the same address, hence its sizes. The
+// What a table begins with. The bytes of another asset may have come to lie at the same address, hence its sizes. The
 // arrays start at cache lines: a table that was copied to another place in its line is none.
 struct Header {
   std::uint64_t magic, asset, triangles, vertices, alignment;
@@ -285,7 +285,7 @@ class Filler {
     }
   }
 
-  // Visits the triangles that runs of one part and clusters have in common.
+  // What runs of one part and clusters have in common.
   template <typename Visit>
   void for_part_runs(const Visit& visit) const {
     for (std::uint32_t c = 0; c < out_.clusters.size; ++c) {
@@ -391,7 +391,7 @@ class Filler {
     }
   }
 
-  // Fills in where runs of so many entries each start, and the end.
+  // Of runs of so many entries each, where they start, and the end.
   static void fill_starts(Span<const std::uint32_t> counts, Span<std::uint32_t> starts) {
     for (std::size_t i = 0; i < starts.size; ++i) {
       starts[i] = i == 0 ? 0 : starts[i - 1] + counts[i - 1];

@@ -11,10 +11,10 @@ namespace {
 double least_of(double a, double b, double c) { return std::min(a, std::min(b, c)); }
 double greatest_of(double a, double b, double c) { return std::max(a, std::max(b, c)); }
 
-// One look at the corners of a and of b on their way.
+// What the corners of a and of b do to each other.
 class Pass {
  public:
-  explicit Pass(const StraightPath& way) : way_(way) {
+  explicit Pass(const Way& way) : way_(way) {
     for (std::size_t k = 0; k < 6; ++k) {
       moves_[k] = way.to.p[k] - way.from.p[k];
     }
@@ -26,7 +26,7 @@ class Pass {
       }
     }
     const double least = way.step / std::sqrt(most);  // infinite where nothing moves
-    // Pairs that move farther are looked at at fewer times, the farther apart they are.
+    // Of what moves farther the fewer times are looked at, the farther it is.
     least_step_ = least >= way.shortest ? least : std::min(way.shortest * way.shortest / least, 256 * way.shortest);
   }
 
@@ -91,7 +91,7 @@ class Pass {
     return until;
   }
 
-  const StraightPath& way_;
+  const Way& way_;
   Double3 moves_[6];
   double least_step_;
 };
@@ -106,7 +106,7 @@ bool is_finite(const SixCorners& corners) {
 
 }  // namespace
 
-SixCorners StraightPath::at(double t) const {
+SixCorners Way::at(double t) const {
   if (t >= 1) {
     return to;
   }
@@ -117,7 +117,7 @@ SixCorners StraightPath::at(double t) const {
   return out;
 }
 
-Approach approach(const StraightPath& way, double limit) {
+Approach approach(const Way& way, double limit) {
   if (!is_finite(way.from) || !is_finite(way.to)) {
     return {Outcome::kApart, 1};
   }

@@ -20,7 +20,7 @@ constexpr float kTolerance = 1e-4F;
 constexpr double kWidest = 1.0 / 1024;          // what vertices may stray in a piece, in heights
 constexpr double kFarthest = 1.0 / 4;           // what they may move against each other in a piece, in heights
 constexpr double kTooFar = 16;                  // heights: cut by this, a step would have too many pieces
-constexpr int kHalvingsMax = 9;                 // of the step, into pieces
+constexpr int kMostHalvings = 9;                // of the step, into pieces
 constexpr std::size_t kClusterPairs = 1 << 14;  // listed at a time
 
 // A body, on its way through the pieces.
@@ -73,7 +73,7 @@ struct Walker {
   MovingScene moving() const { return {start, end, strays, spheres, clusters, is_swept}; }
 };
 
-struct StepMemory {
+struct Room {
   Walker a, b;
   StepTable table;
   PartTable parts;
@@ -98,7 +98,7 @@ struct StepMemory {
   }
 };
 
-// The memory that a job reads of a motion.
+// What a job reads of a motion.
 struct MotionRanges {
   BodyRanges body;
   MemoryRange end_vertices, end_bones, end_weights, start_joints, end_joints, parents, joint_of_bone;
@@ -136,10 +136,10 @@ bool is_aliased(const StepJob& job) {
   return shared;
 }
 
-Status check(const StepJob& job, Target& resolved, StepMemory& memory_of_step) {
-  Status status = check_motion(job.a, memory_of_step.a.surface);
+Status check(const StepJob& job, Target& resolved, Room& room) {
+  Status status = check_motion(job.a, room.a.surface);
   if (status == SC_OK && has_two(job)) {
-    status = check_motion(job.b, memory_of_step.b.surface);
+    status = check_motion(job.b, room.b.surface);
   }
   if (status == SC_OK && job.filter != nullptr) {
     status =
@@ -172,22 +172,18 @@ Status check(const StepJob& job, Target& resolved, StepMemory& memory_of_step) {
 // One run of a checked job.
 class Step {
  public:
-  Step(const StepJob& job, Target resolved, StepMemory& memory_of_step)
-      : job_(job),
-        resolved_(resolved),
-        memory_(memory_of_step),
-        are_one_(!has_two(job)),
-        b_(are_one_ ? memory_of_step.a : memory_of_step.b) {}
+  Step(const StepJob& job, Target resolved, Room& room)
+      : job_(job), resolved_(resolved), room_(room), are_one_(!has_two(job)), b_(are_one_ ? room.a : room.b) {}
 
   // Refuses steps that are too wild for a certain answer; only scratch memory is written.
   Status begin() {
-    begin(memory_.a, job_.a);
+    begin(room_.a, job_.a);
     if (!are_one_) {
       begin(b_, job_.b);
     }
-    const double height{memory_.a.asset->info().height};
-    for (const Walker* walker : {&memory_.a, &b_}) {
-      if (!(walker->widest() <= kWidest * height * (1 << 2 * kHalvingsMax))) {
+    const double height{room_.a.asset->info().height};
+    for (const Walker* walker : {&room_.a, &b_}) {
+      if (!(walker->widest() <= kWidest * height * (1 << 2 * kMostHalvings))) {
         return refuse(SC_BAD_VALUE,
                       walker->motion->blend == SC_BLEND_LINEAR ? SC_FIELD_MORPH_WEIGHTS : SC_FIELD_JOINTS);
       }
@@ -196,18 +192,18 @@ class Step {
   }
 
   std::size_t run() {
-    Walker &a = memory_.a, &b = b_;
+    Walker &a = room_.a, &b = b_;
     const double height{a.asset->info().height};
     const double tolerance = height * double{job_.tolerance > 0 ? job_.tolerance : kTolerance};
-    memory_.table.clear();
+    room_.table.clear();
     StepCollector collector({{&a.surface, are_one_ ? nullptr : job_.a.body.ignored_parts}, &a.way, a.cluster_parts},
                             {{&b.surface, are_one_ ? nullptr : job_.b.body.ignored_parts}, &b.way, b.cluster_parts},
-                            are_one_, memory_.table, tolerance);
+                            are_one_, room_.table, tolerance);
     pose_at(0, false);
     pose_at(1, true);
     double share = 1;
     const double widest = std::max(a.widest(), b.widest()), reach = greatest_move();
-    for (int k = 0; k < kHalvingsMax; ++k) {
+    for (int k = 0; k < kMostHalvings; ++k) {
       if (widest * share * share > kWidest * height || reach * share > kFarthest * height) {
         share /= 2;
       }
@@ -243,7 +239,7 @@ class Step {
     Double3 sum{0, 0, 0};
     double count = 0, most = 0;
     const auto over_all = [&](const auto& take) {
-      for (const Walker* walker : {&memory_.a, &b_}) {
+      for (const Walker* walker : {&room_.a, &b_}) {
         for (std::size_t bone = 0; walker->start.has_balls && bone < walker->surface.bone_boxes.size; ++bone) {
           const BoneBox& box = walker->surface.bone_boxes[bone];
           if (box.half.x >= 0) {
@@ -261,7 +257,7 @@ class Step {
     }
     const Double3 mean = (1 / count) * sum;
     over_all([&](const Double3& move) { most = std::max(most, length(move - mean)); });
-    return most < kTooFar * double{memory_.a.asset->info().height} ? 2 * most : 0;
+    return most < kTooFar * double{room_.a.asset->info().height} ? 2 * most : 0;
   }
 
   static Double3 moved(const BoneMatrices& bones, std::size_t bone, const Vec3& p) {
@@ -283,9 +279,9 @@ class Step {
                walker.way.pose_at(time, walker.bones[side], walker.morph_weights[side], walker.vertices[side]),
                job_.filter, scene);
     };
-    pose(memory_.a);
+    pose(room_.a);
     if (!are_one_) {
-      pose(memory_.b);
+      pose(room_.b);
     }
   }
 
@@ -293,7 +289,7 @@ class Step {
   // no more is asked; of a null list, of all spheres.
   void note_ends(Span<const Pair> clusters, bool at_start, StepCollector& collector) {
     constexpr std::size_t kAtATime = 16;
-    ContactScene &a = at_start ? memory_.a.start : memory_.a.end, &b = at_start ? b_.start : b_.end;
+    ContactScene &a = at_start ? room_.a.start : room_.a.end, &b = at_start ? b_.start : b_.end;
     if (clusters.data == nullptr) {
       find_ends(a, b, at_start, collector);
       return;
@@ -315,30 +311,29 @@ class Step {
   }
 
   void find_ends(const ContactScene& a, const ContactScene& b, bool at_start, StepCollector& collector) {
-    memory_.parts.clear();
+    room_.parts.clear();
     const ContactLists lists{{}, {}, {}, false};
-    ContactCollector found = are_one_
-                                 ? ContactCollector(memory_.a.surface, memory_.parts, lists)
-                                 : ContactCollector({&memory_.a.surface, job_.a.body.ignored_parts},
-                                                    {&b_.surface, job_.b.body.ignored_parts}, memory_.parts, lists);
+    ContactCollector found = are_one_ ? ContactCollector(room_.a.surface, room_.parts, lists)
+                                      : ContactCollector({&room_.a.surface, job_.a.body.ignored_parts},
+                                                         {&b_.surface, job_.b.body.ignored_parts}, room_.parts, lists);
     find_candidates(resolved_, {a, b, are_one_}, found);
-    for (std::size_t w = 0; w < memory_.parts.word_count; ++w) {
-      for (std::uint64_t word = memory_.parts.seen[w]; word != 0; word &= word - 1) {
-        collector.note_end(memory_.parts.contacts[64 * w + lowest_bit(word)], at_start);
+    for (std::size_t w = 0; w < room_.parts.word_count; ++w) {
+      for (std::uint64_t word = room_.parts.seen[w]; word != 0; word &= word - 1) {
+        collector.note_end(room_.parts.contacts[64 * w + lowest_bit(word)], at_start);
       }
     }
   }
 
   void walk(double from, double share, StepCollector& collector) {
-    prepare(memory_.a, share);
+    prepare(room_.a, share);
     if (!are_one_) {
       prepare(b_, share);
     }
-    const MovingScene a = memory_.a.moving(), b = b_.moving();
+    const MovingScene a = room_.a.moving(), b = b_.moving();
     const MovingBodies bodies{a, are_one_ ? a : b, are_one_};
-    Span<Pair> listed{memory_.spheres.data, 0};
+    Span<Pair> listed{room_.spheres.data, 0};
     find_moving_spheres(resolved_, bodies, listed);
-    for (ContactScene* scene : {&memory_.a.start, &memory_.a.end, &b_.start, &b_.end}) {
+    for (ContactScene* scene : {&room_.a.start, &room_.a.end, &b_.start, &b_.end}) {
       scene->has_sphere_boxes = true;
     }
     const Span<const Pair> spheres{listed.data, listed.size};
@@ -346,7 +341,7 @@ class Step {
       return;
     }
     collector.begin_piece(from, from + share);
-    MovingClusters found{memory_.clusters.data, memory_.clusters.size, nullptr, nullptr};
+    MovingClusters found{room_.clusters.data, room_.clusters.size, nullptr, nullptr};
     const bool has_all = find_moving_clusters(resolved_, bodies, spheres, found);
     const Span<const Pair> clusters{found.pairs, found.count};
     if (share == 1) {
@@ -359,12 +354,12 @@ class Step {
       return;
     }
     Batch batch{resolved_, bodies, collector};
-    found = {memory_.clusters.data, memory_.clusters.size, &Batch::take, &batch};
+    found = {room_.clusters.data, room_.clusters.size, &Batch::take, &batch};
     find_moving_clusters(resolved_, bodies, spheres, found);
     Batch::take(&batch, {found.pairs, found.count});
   }
 
-  // A batch of pairs of clusters, if there are too many for one list.
+  // Of pairs of clusters, where there are too many for one list.
   struct Batch {
     Target resolved;
     const MovingBodies& bodies;
@@ -387,7 +382,7 @@ class Step {
 
   const StepJob& job_;
   Target resolved_;
-  StepMemory& memory_;
+  Room& room_;
   bool are_one_;
   Walker& b_;
 };
@@ -408,28 +403,28 @@ bool MovingClusters::put(std::size_t a, std::size_t b) {
 
 std::size_t step_scratch_words(const Motion* a, const Motion* b) noexcept {
   const auto is_one = [](const Motion& motion) {
-    return check_asset(motion.body.asset) == SC_OK && motion.joint_count <= kJointsMax;
+    return check_asset(motion.body.asset) == SC_OK && motion.joint_count <= kMostJoints;
   };
   if (a == nullptr || !is_one(*a) || (b != nullptr && !is_one(*b))) {
     return 0;
   }
   WordMemory memory(nullptr);
-  StepMemory memory_of_step;
-  memory_of_step.take(memory, *a, b);
+  Room room;
+  room.take(memory, *a, b);
   return memory.used();
 }
 
 Status StepJob::run() noexcept {
   Target resolved{};
-  StepMemory memory_of_step;
-  const Status status = check(*this, resolved, memory_of_step);
+  Room room;
+  const Status status = check(*this, resolved, room);
   if (status != SC_OK) {
     return status;
   }
   WordMemory memory(scratch);
   const bool two = has_two(*this);
-  memory_of_step.take(memory, a, two ? &b : nullptr);
-  Step step(*this, resolved, memory_of_step);
+  room.take(memory, a, two ? &b : nullptr);
+  Step step(*this, resolved, room);
   if (const Status wild = step.begin(); wild != SC_OK) {
     return wild;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Collects for each two body parts when they first touch in a step, and when last.
+// Of each two body parts: when they first touch in a step, and when last.
 #pragma once
 
 #include "skin/left_out.h"
@@ -33,11 +33,11 @@ class StepCollector {
   StepCollector(const StepBody& a, const StepBody& b, bool are_one, const StepTable& table, double tolerance)
       : a_(a), b_(b), are_one_(are_one), table_(table), tolerance_(tolerance) {}
 
-  // Notes two parts that have contacts at the start of the step, or at its end.
+  // Those have contacts at the start of the step, or at its end.
   void note_end(const PartContact& contact, bool at_start);
   // Is that known of all parts of two clusters?
   bool touch_at_end(const Pair& clusters, bool at_start);
-  // Begins a piece of the step: all that follows is about it.
+  // What follows is of that part of the step.
   void begin_piece(double begin, double end) {
     begin_ = begin;
     end_ = end;
@@ -52,7 +52,7 @@ class StepCollector {
   StepEntry& entry(std::uint32_t part_a, std::uint32_t part_b);
   const StepEntry* known(std::uint32_t part_a, std::uint32_t part_b) const;  // null: nothing
   const StepEntry* known_of_clusters(std::size_t cluster_a, std::size_t cluster_b);
-  double search(const MovingCandidate& candidate, const StraightPath& way, double from, double to, double until,
+  double search(const MovingCandidate& candidate, const Way& way, double from, double to, double until,
                 SixCorners& then);
   SixCorners corners_at(const MovingCandidate& candidate, double time);
 

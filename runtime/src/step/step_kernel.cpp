@@ -37,7 +37,7 @@ HWY_INLINE void sweep_boxes(const BoxColumns& from, const BoxColumns& to, Vector
   }
 }
 
-// The rounding errors that a box' vertices, and a gap along a direction, may have: 2^-20 of the greatest coordinate.
+// What roundings of a box' vertices may be, and of a gap along a direction: 2^-20 of the greatest coordinate.
 HWY_INLINE Vector rounding_of(const BoxColumns& boxes, std::size_t i) {
   constexpr Floats kFloats;
   Vector most = hn::Zero(kFloats);
@@ -106,7 +106,7 @@ HWY_INLINE bool pass_by(const Box& start_a, const Box& end_a, const Box& start_b
   return first > last;
 }
 
-// The middle of two directions, the start's and the end's.
+// Of two directions, one of the start's and the end's middle.
 HWY_INLINE void middle_direction(const Box& start_a, const Box& end_a, const Box& start_b, const Box& end_b,
                                  float (&direction)[3]) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -279,7 +279,7 @@ HWY_NOINLINE void pair_blocks(const MovingBodies& bodies, const MovingBlock& blo
       for (std::size_t k = 0; k < places.count; k += kLanes) {
         const std::size_t left = places.count - k;
         std::uint64_t bits = ~std::uint64_t{0} >> (64 - (left < kLanes ? left : kLanes));
-        bits &= ~stay_apart(MovingTriangles(block, i, places.a + k), MovingTriangles(other, j, places.b + k), stray);
+        bits &= ~stay_apart(MovingTaken(block, i, places.a + k), MovingTaken(other, j, places.b + k), stray);
         for (; bits != 0; bits &= bits - 1) {
           const std::size_t lane = lowest_bit(bits);
           const std::size_t one = i + static_cast<std::size_t>(places.a[k + lane]);
