@@ -38,7 +38,7 @@ struct Verdict {
 inline const char* graded(bool all, bool some) { return all ? kHolds : some ? kInPart : kFails; }
 
 // claims.csv: id, where, the paper says, rule, verdict, finding.
-Table judge_claims(const Results& results);
+Table evaluate_claims(const Results& results);
 // readings.csv: the paper's two sphere counts and our bakes nearest to them.
 Table compare_readings(const Results& results);
 // defaults.csv: setting, current, follows, rule, finding.

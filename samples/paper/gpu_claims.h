@@ -7,9 +7,9 @@
 namespace spherechain::paper {
 
 // "On the GPU M1 takes less time than M2", at the two sphere counts nearest to the paper's. A lead is a twentieth.
-Verdict judge_gpu_m1_faster(const Table& medians);
+Verdict evaluate_gpu_m1_faster(const Table& medians);
 
 // "Parallelism takes about 10,000 spheres or more": the GPU, launch and copies included, against one core of a CPU.
-Verdict judge_gpu_needs_many(const Table& medians);
+Verdict evaluate_gpu_needs_many(const Table& medians);
 
 }  // namespace spherechain::paper

@@ -115,7 +115,7 @@ void run(const Options& options) {
   write_asset("balanced.sphc", study.balanced());
   if (!options.docs.empty()) write_docs(options.docs, results);
   progress("wrote " + options.out + "/index.html");
-  const Table claims = judge_claims(results);
+  const Table claims = evaluate_claims(results);
   for (std::size_t i = 0; i < claims.rows.size(); ++i) {
     std::printf("%-16s %s\n", claims.word(i, "verdict").c_str(), claims.word(i, "paper_says").c_str());
   }

@@ -117,8 +117,8 @@ sc_status sc_create_body(const sc_model* model, const sc_body_def* def, sc_body*
     return refuse(SC_NULL, model == nullptr ? SC_FIELD_ASSET : SC_FIELD_OUTPUT);
   }
   const sc_body_def wanted = def == nullptr ? sc_body_def{} : *def;
-  constexpr std::size_t kMost = std::size_t{1} << 31;
-  if (wanted.max_triangles > kMost || wanted.max_penetrations > kMost) {
+  constexpr std::size_t kCountMax = std::size_t{1} << 31;
+  if (wanted.max_triangles > kCountMax || wanted.max_penetrations > kCountMax) {
     return refuse(SC_BAD_VALUE, SC_FIELD_TRIANGLES);
   }
   sc_body made{};

@@ -98,11 +98,11 @@ class Sweep {
   void look_along(const Double3& direction);
   // Boxes of all blocks that can block a way longer than `depth`.
   void see_boxes(double depth);
-  struct Room {
+  struct Reach {
     Double3 up, down;  // along each axis
   };
-  void keep(const Room& room);
-  void keep_runs(const Side& side, const Side& other, const Room& room, Boxes& out);
+  void keep(const Reach& room);
+  void keep_runs(const Side& side, const Side& other, const Reach& room, Boxes& out);
   void widen_blocks(const PosedSkin& skin, const TriangleRun& run, Boxes& out) const;
   bool may_block(std::uint32_t a, std::uint32_t b, double depth) const;
   void block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) const;

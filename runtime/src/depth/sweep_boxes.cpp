@@ -99,7 +99,7 @@ bool Sweep::Boxes::make_boxes(std::size_t i, const float* const (&seen)[3]) {
   return true;
 }
 
-void Sweep::keep(const Room& room) {
+void Sweep::keep(const Reach& room) {
   for (std::size_t i = 0; i < vertices_.count; ++i) {
     vertices_.place[vertices_.vertex[i]] = kNoPlace;
   }
@@ -128,7 +128,7 @@ void Sweep::widen_blocks(const PosedSkin& skin, const TriangleRun& run, Boxes& o
 }
 
 // Runs of whose cluster the box meets one of the other side's that goes so far up and down along each axis.
-void Sweep::keep_runs(const Side& side, const Side& other, const Room& room, Boxes& out) {
+void Sweep::keep_runs(const Side& side, const Side& other, const Reach& room, Boxes& out) {
   const double up[3] = {room.up.x + gap_, room.up.y + gap_, room.up.z + gap_};
   const double down[3] = {room.down.x + gap_, room.down.y + gap_, room.down.z + gap_};
   double highest[3], lowest[3];  // of them all

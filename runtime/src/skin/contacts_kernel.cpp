@@ -80,7 +80,8 @@ HWY_NOINLINE bool pair_registers(const BlockPair& blocks, std::size_t i, std::si
   for (std::size_t k = 0; k < places.count; k += kLanes) {
     const std::size_t left = places.count - k;
     std::uint64_t bits = ~std::uint64_t{0} >> (64 - (left < kLanes ? left : kLanes));
-    const Verdicts verdicts = judge(Taken(block, i, places.a + k), Taken(other, j, places.b + k), bits);
+    const Verdicts verdicts =
+        classify(GatheredTriangles(block, i, places.a + k), GatheredTriangles(other, j, places.b + k), bits);
     for (bits &= ~verdicts.apart; bits != 0; bits &= bits - 1) {
       const std::size_t lane = lowest_bit(bits);
       const std::size_t one = i + static_cast<std::size_t>(places.a[k + lane]);

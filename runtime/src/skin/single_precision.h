@@ -45,12 +45,12 @@ HWY_INLINE Vector plane_error(const Vector3& extent) {
 }
 
 // Some of a register of triangles of a block, in any order.
-struct Taken {
+struct GatheredTriangles {
   const Block* block;
   std::size_t first;  // of the register
   hn::Vec<hn::Rebind<std::int32_t, Floats> > which;
 
-  HWY_INLINE Taken(const Block& from, std::size_t begin, const std::int32_t* places)
+  HWY_INLINE GatheredTriangles(const Block& from, std::size_t begin, const std::int32_t* places)
       : block(&from), first(begin), which(hn::LoadU(hn::Rebind<std::int32_t, Floats>(), places)) {}
   HWY_INLINE Vector of(const float* column) const {
     constexpr Floats kFloats;
@@ -110,7 +110,7 @@ struct Verdicts {
 };
 
 // Each lane's two triangles, as exact_crossing.h does it. Lanes that are not wanted may be left open.
-HWY_INLINE Verdicts judge(const Taken& first, const Taken& second, std::uint64_t wanted) {
+HWY_INLINE Verdicts classify(const GatheredTriangles& first, const GatheredTriangles& second, std::uint64_t wanted) {
   Vector3 a[3] = {first.corner(0), first.corner(1), first.corner(2)};
   Vector3 b[3] = {second.corner(0), second.corner(1), second.corner(2)};
   Vector extents[3];

@@ -13,7 +13,7 @@
 
 namespace spherechain {
 
-constexpr std::size_t kMostJoints = 65536;  // so that no size of memory overflows
+constexpr std::size_t kJointsMax = 65536;  // so that no size of memory overflows
 
 // Of a joint during the step, at most: the norm of its matrix' linear part, of that part's first two derivatives by
 // time, and of those of where its origin is.

@@ -52,7 +52,7 @@ class StepCollector {
   StepEntry& entry(std::uint32_t part_a, std::uint32_t part_b);
   const StepEntry* known(std::uint32_t part_a, std::uint32_t part_b) const;  // null: nothing
   const StepEntry* known_of_clusters(std::size_t cluster_a, std::size_t cluster_b);
-  double search(const MovingCandidate& candidate, const Way& way, double from, double to, double until,
+  double search(const MovingCandidate& candidate, const CornerPaths& way, double from, double to, double until,
                 SixCorners& then);
   SixCorners corners_at(const MovingCandidate& candidate, double time);
 

@@ -279,7 +279,8 @@ HWY_NOINLINE void pair_blocks(const MovingBodies& bodies, const MovingBlock& blo
       for (std::size_t k = 0; k < places.count; k += kLanes) {
         const std::size_t left = places.count - k;
         std::uint64_t bits = ~std::uint64_t{0} >> (64 - (left < kLanes ? left : kLanes));
-        bits &= ~stay_apart(MovingTaken(block, i, places.a + k), MovingTaken(other, j, places.b + k), stray);
+        bits &= ~stay_apart(GatheredMovingTriangles(block, i, places.a + k),
+                            GatheredMovingTriangles(other, j, places.b + k), stray);
         for (; bits != 0; bits &= bits - 1) {
           const std::size_t lane = lowest_bit(bits);
           const std::size_t one = i + static_cast<std::size_t>(places.a[k + lane]);
