@@ -35,7 +35,7 @@ std::string machine() {
   return processor + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores, compiler " + __VERSION__;
 }
 
-// What is left out of a quick run is the number of points, no experiment.
+// A quick run has fewer points, but the same experiments.
 std::vector<Setting> settings(bool quick) {
   std::vector<Setting> out;
   const auto add = [&](const char* series, const char* profile, const std::string& key, std::vector<double> values,

@@ -21,7 +21,7 @@ struct Cell {
   Cell(const char* value) : word(value) {}
 };
 
-// What an experiment measures: a CSV file's contents, and all that figures and verdicts are made from. Units are in the
+// The result of an experiment, as in a CSV file. All figures and verdicts are made from tables. Units are in the
 // columns' names.
 struct Table {
   std::string name;  // of the file, without .csv

@@ -83,7 +83,7 @@ using PenetrationClass = sc_penetration_class;
 using Relation = sc_relation;
 using Measures = sc_measures;
 using Rule = sc_rule;
-/* What a person sees as a fault. */
+/* True for the classes that a person sees as a fault. */
 inline bool is_fault(PenetrationClass kind) noexcept { return kind >= SC_CLASS_DEEP_FOLD; }
 }  // namespace spherechain
 #endif

@@ -35,7 +35,7 @@ std::size_t scratch_words_of(const sc_model& model, const sc_model& other, std::
   return words;
 }
 
-// Of null words it only counts them.
+// Lays out the body's arrays in `words`. If `words` is null, it only counts them.
 std::size_t lay_out(sc_body& body, const sc_body_def& def, std::uint64_t* words) {
   WordMemory memory(words);
   const AssetView& asset = asset_of(body);

@@ -105,7 +105,8 @@ struct SphereList {
   std::size_t count = 0;
   float x[kAtATime], y[kAtATime], z[kAtATime], radius[kAtATime];
 
-  // Those of a body, from `first` on, that reach into the box, until there is no room; gives where it ended.
+  // Adds a body's spheres that reach into the box, from `first` on, until the memory is full. Returns the sphere at
+  // which it stopped.
   std::size_t fill(const PlacedBody& body, std::size_t first, const Box& box) {
     count = 0;
     for (; first < body.sphere_count() && count < kAtATime; ++first) {

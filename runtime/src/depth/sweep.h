@@ -47,13 +47,14 @@ class Sweep {
   // Likewise, of moves in that direction alone.
   void keep_on_way(const Double3& direction, double depth);
 
-  // What the contour's own triangles block of the way: it is at least so long. Ends at `bound`.
+  // Lower bound of the way out: the distance that the contour's own triangles block. The search ends at `bound`.
   double find_by_contour(const Double3& direction, const Contour& contour, double bound, WayOut& out);
   // False where the way is not shorter than `bound`: then `out` is the pair that said so.
   bool find(const Double3& direction, const Contour& contour, double bound, WayOut& out);
   // Is b, moved so, inside a, or a inside b? `outwards`: -1 where the skins are inside out.
   bool is_enclosed(const Double3& direction, const WayOut& way, const Contour& contour, double outwards);
-  // Of b inside a, seen along the direction of a way that long; or of the outer layers of both alone.
+  // Volume of b inside a, seen along the direction of a way of length `depth`; or only that of the outer layers of
+  // both.
   Volume volume(const Double3& direction, double depth, bool of_outer_layers);
 
  private:

@@ -47,7 +47,7 @@ void Sweep::Boxes::view_blocks(const View& view) {
   }
 }
 
-// Those that reach into a box; what is not finite stays.
+// Keeps the blocks that reach into a box, and those that are not finite.
 void Sweep::Boxes::keep_blocks(const float (&least)[3], const float (&most)[3]) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < block_count; ++i) {

@@ -23,7 +23,7 @@ HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
-// Of triangles of a register of one block and a register of another, by their places there.
+// Pairs of triangles, one from a register of each block. Each entry is the triangle's place in its register.
 using PlacePairs = PairList<kLanes * kLanes>;
 
 // Lane k: triangle j + k of `other` has a corner where one of `block` has one at rest.
@@ -125,7 +125,7 @@ HWY_NOINLINE bool pair_clusters(const Bodies& bodies, std::size_t a, std::size_t
          pair_triangles({block, other, bodies.a.neighbours, bodies.are_one && a == b}, bodies.a.first_only, collector);
 }
 
-// Of clusters, waiting to be decided together.
+// Pairs of clusters that wait to be tested together.
 struct ClusterPairs : PairList<512> {
   Pair spheres{~0U, ~0U};  // whose clusters were paired last
   bool touch = false;      // do they?
@@ -244,7 +244,7 @@ HWY_INLINE std::uint64_t paired(const Bodies& bodies, std::size_t first, std::si
   return bits & (~std::uint64_t{0} >> (64 - (count < 64 ? count : 64)));
 }
 
-// Of b and a, waiting for their clusters to be paired.
+// Pairs of spheres (b and a) that wait for their clusters to be paired.
 using SpherePairs = PairList<512>;
 
 HWY_NOINLINE void pair_spheres(const Bodies& bodies, SpherePairs& spheres, ClusterPairs& clusters,

@@ -149,7 +149,7 @@ class Looker {
     return surface_.pieces[surface_.triangle_vertices[3 * triangle]];
   }
 
-  // Of another piece than the look's own. (Moeller and Trumbore)
+  // True if the ray meets a triangle of another piece than the look's own (Moeller and Trumbore).
   bool hits(std::size_t triangle, const Double3& from, const Double3& direction) const {
     if (piece_of(triangle) == own_) {
       return false;

@@ -82,13 +82,13 @@ struct Sides {
     const Vector most = hn::Max(hn::Max(distances[0], distances[1]), distances[2]);
     return hn::Or(hn::Gt(least, error), hn::Lt(most, hn::Neg(error)));
   }
-  // None is on a side that is not certain.
+  // True in lanes where every corner's side is certain.
   HWY_INLINE LaneMask known(Vector error) const {
     return hn::And(hn::And(hn::Gt(hn::Abs(distances[0]), error), hn::Gt(hn::Abs(distances[1]), error)),
                    hn::Gt(hn::Abs(distances[2]), error));
   }
-  // Of known sides: turns the corners until the one that is alone on its side is the first. Returns where that is
-  // below.
+  // Turns the corners until the first is the one alone on its side. All sides must be known. Returns the lanes in which
+  // that corner is below.
   HWY_INLINE LaneMask put_alone_first(Vector3 (&corners)[3]) const {
     constexpr Floats kFloats;
     const Vector zero = hn::Zero(kFloats);
@@ -104,7 +104,7 @@ struct Sides {
   }
 };
 
-// What single precision can tell of pairs of triangles.
+// The pairs of triangles that single precision can decide.
 struct Verdicts {
   std::uint64_t apart, meeting;
 };

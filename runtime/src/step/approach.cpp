@@ -11,7 +11,7 @@ namespace {
 double least_of(double a, double b, double c) { return std::min(a, std::min(b, c)); }
 double greatest_of(double a, double b, double c) { return std::max(a, std::max(b, c)); }
 
-// What the corners of a and of b do to each other.
+// One search for the time at which the corners of triangles a and b come close.
 class Pass {
  public:
   explicit Pass(const CornerPaths& way) : way_(way) {
@@ -26,7 +26,7 @@ class Pass {
       }
     }
     const double least = way.step / std::sqrt(most);  // infinite where nothing moves
-    // Of what moves farther the fewer times are looked at, the farther it is.
+    // The farther the corners move, the longer the least step: this limits the number of times looked at.
     least_step_ = least >= way.shortest ? least : std::min(way.shortest * way.shortest / least, 256 * way.shortest);
   }
 

@@ -98,7 +98,7 @@ struct StepMemory {
   }
 };
 
-// What a job reads of a motion.
+// The memory that a job reads of a motion.
 struct MotionRanges {
   BodyRanges body;
   MemoryRange end_vertices, end_bones, end_weights, start_joints, end_joints, parents, joint_of_bone;
@@ -359,7 +359,7 @@ class Step {
     Batch::take(&batch, {found.pairs, found.count});
   }
 
-  // Of pairs of clusters, where there are too many for one list.
+  // A batch of cluster pairs, where there are too many for one list.
   struct Batch {
     Target resolved;
     const MovingBodies& bodies;

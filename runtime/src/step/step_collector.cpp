@@ -187,8 +187,8 @@ void StepCollector::decide(const MovingCandidate& candidate) {
   if (may_end) {
     const double ends = search(candidate, {way.to, way.from, stray, way.step, way.shortest}, end_, begin_,
                                std::max(last, begin_), then);
-    // Of two that graze each other one of the two ways may find a contact, the other none. The way forward counts: so
-    // no time depends on the order in which triangles are looked at.
+    // If two triangles graze each other, the search forward may find a contact that the search backward misses, or the
+    // reverse. The search forward counts, so no time depends on the order in which triangles are looked at.
     if (ends != kNever && ends > last &&
         (begins != kNever || search(candidate, way, begin_, end_, end_, then) != kNever)) {
       entry(part_a, part_b).last = ends;
@@ -203,7 +203,7 @@ std::size_t StepCollector::list(Span<StepContact> out) const {
       if (count < out.size) {
         const StepEntry& of = table_.contacts[64 * w + lowest_bit(word)];
         out[count] = of.contact;
-        // What touches at the end, and no earlier for all that was seen, touches from then on.
+        // A pair in contact at the end, and not seen earlier, is in contact from that time on.
         out[count].begin = static_cast<float>(std::min(of.first, 1.0));
         out[count].end = static_cast<float>(std::max(of.last, std::min(of.first, 1.0)));
       }

@@ -33,11 +33,11 @@ class StepCollector {
   StepCollector(const StepBody& a, const StepBody& b, bool are_one, const StepTable& table, double tolerance)
       : a_(a), b_(b), are_one_(are_one), table_(table), tolerance_(tolerance) {}
 
-  // Those have contacts at the start of the step, or at its end.
+  // Notes a part contact at the start of the step, or at its end.
   void note_end(const PartContact& contact, bool at_start);
   // Is that known of all parts of two clusters?
   bool touch_at_end(const Pair& clusters, bool at_start);
-  // What follows is of that part of the step.
+  // Begins a piece of the step: contacts that are added next belong to it.
   void begin_piece(double begin, double end) {
     begin_ = begin;
     end_ = end;

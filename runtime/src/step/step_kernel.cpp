@@ -37,7 +37,7 @@ HWY_INLINE void sweep_boxes(const BoxColumns& from, const BoxColumns& to, Vector
   }
 }
 
-// What roundings of a box' vertices may be, and of a gap along a direction: 2^-20 of the greatest coordinate.
+// Bound of the rounding errors of a box' vertices and of a gap along a direction: 2^-20 of the greatest coordinate.
 HWY_INLINE Vector rounding_of(const BoxColumns& boxes, std::size_t i) {
   constexpr Floats kFloats;
   Vector most = hn::Zero(kFloats);
@@ -106,7 +106,7 @@ HWY_INLINE bool pass_by(const Box& start_a, const Box& end_a, const Box& start_b
   return first > last;
 }
 
-// Of two directions, one of the start's and the end's middle.
+// Direction between the middles of the two boxes, each the mean of its start and its end.
 HWY_INLINE void middle_direction(const Box& start_a, const Box& end_a, const Box& start_b, const Box& end_b,
                                  float (&direction)[3]) {
   for (std::size_t axis = 0; axis < 3; ++axis) {

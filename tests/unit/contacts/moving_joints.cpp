@@ -18,7 +18,7 @@ std::size_t joint_count() {
   return count;
 }
 
-// Of a joint in its parent's space.
+// Converts a joint's matrix in its parent's space.
 Transform transform_of(const Eigen::Affine3d& m, double scale) {
   const Eigen::Quaterniond q(m.rotation());
   const Eigen::Vector3d t = m.translation();

@@ -27,7 +27,7 @@ class MovingJoints {
 };
 
 Eigen::Affine3d matrix_of(const float* rows);
-// Of all bones: as at rest.
+// Matrices of all bones in the rest pose.
 std::vector<float> rest_palette();
 // The number of that bone, and the body part that follows it.
 std::size_t bone_named(const std::string& name);
@@ -39,7 +39,7 @@ struct PosedTriangles {
   TriangleCorners operator[](std::uint32_t source_triangle) const;
   std::vector<float> vertices;
 };
-// What a step may be off by, by default.
+// Default tolerance of a step.
 double step_tolerance();
 // 0 where they cross.
 double distance_between(const TriangleCorners& a, const TriangleCorners& b);

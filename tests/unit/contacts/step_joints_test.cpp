@@ -52,7 +52,8 @@ int check_all_are_found(const StepContacts& found, const MovingJoints& joints, B
   return seen;
 }
 
-// What is reported to begin on the way does so: its triangles are no farther apart than the tolerance.
+// Checks each contact that is reported to begin during the step: its triangles are then no farther apart than the
+// tolerance.
 void check_none_is_made_up(const StepContacts& found, const MovingJoints& joints, Blend blend) {
   for (const StepContact& of : found.contacts) {
     CAPTURE(of.part_a);

@@ -87,7 +87,7 @@ std::vector<Penetration> by_parts(const Penetrations& found) {
   return out;
 }
 
-// What the jobs say, with the engine's joints.
+// The penetrations that the jobs report with the engine's joints.
 std::vector<Penetration> expected_of(const Winding& of, const Pose& pose, int quick) {
   SkinContactJob find;
   find.asset = &of.opened->asset;

@@ -13,7 +13,7 @@
 namespace spherechain::test {
 namespace {
 
-// What a crowd of this one instance finds.
+// The pairs that a crowd of this one instance finds.
 std::vector<Pair> in_crowd(const Asset& asset, const std::vector<Sphere>& spheres, Target target) {
   CrowdBuffers buffers(asset, 1, 1);
   std::vector<CrowdPair> found(spheres.size() * spheres.size());

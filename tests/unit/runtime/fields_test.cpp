@@ -80,7 +80,7 @@ struct Scene {
   std::vector<std::uint64_t> memory = std::vector<std::uint64_t>(20000, 7);
 };
 
-// What is wrong with a pose's bones, whatever the job.
+// Checks the errors of a pose's bones, which are the same for all jobs.
 template <typename Job>
 std::vector<Refusal<Job>> bone_refusals() {
   return {

@@ -12,7 +12,7 @@
 namespace spherechain::test {
 namespace {
 
-// Of coordinates of some units, and of a quadratic form in them.
+// Rounding error of coordinates of some units, and of a quadratic form in them.
 constexpr double kMeshRounding = 2e-5;
 
 struct PosedAsset {
@@ -122,7 +122,7 @@ std::vector<Sphere> exact_by_moments(const PosedAsset& s, Radius kind) {
 
 void check_opened(const OpenedAsset& opened) { REQUIRE_MESSAGE(opened.status == SC_OK, opened.message); }
 
-// Of both radii, on every target, bit for bit.
+// Compares both radii on every target, bit for bit.
 void check_exact(const PosedAsset& s) {
   const OpenedAsset opened(s.tiny.parts);
   check_opened(opened);

@@ -10,7 +10,7 @@
 namespace spherechain::test {
 namespace {
 
-// Of coordinates around 1 and sums of a dozen floats: some units in the last place.
+// Rounding error of coordinates around 1 and sums of a dozen floats: some units in the last place.
 constexpr double kRounding = 2e-6;
 
 struct Expected {

@@ -165,7 +165,7 @@ TEST_CASE("a scene's transforms move spheres and boxes") {
   for (int turn = 0; turn < 30; ++turn) {
     Scene scene(40, random, 3);
     std::vector<Transform> transforms(scene.bodies.size());
-    // What certainly meets, and what may: radii and boxes a little smaller, and a little larger.
+    // Bodies with slightly smaller radii and boxes certainly meet; slightly larger ones may.
     std::vector<SceneBody> less = scene.bodies, more = scene.bodies;
     std::vector<std::vector<Sphere>> small = scene.spheres, large = scene.spheres;
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {

@@ -29,7 +29,7 @@ struct Posable {
   TinySkin skin;
 };
 
-// What a job is to find, from where the source's vertices are.
+// The contacts that a job must find, computed from the positions of the source's vertices.
 class PlainContacts {
  public:
   PlainContacts(const TinyAsset& tiny, const std::vector<float>& positions) : tiny_(tiny), positions_(positions) {
@@ -128,7 +128,7 @@ void check_same(const SkinContacts& found, const SkinContacts& expected) {
   CHECK(same_bits(found.triangles, expected.triangles));
 }
 
-// What the job finds with all lists, and with spheres alone.
+// Checks the job with all lists, and with spheres alone.
 void check_job(SkinContactJob job, const SkinContacts& expected) {
   for (const Target target : supported_targets()) {
     INFO(std::string(sc_target_name(target)));
