@@ -41,7 +41,8 @@ Verdict evaluate_adjustment(const Results& results) {
                       mean(before), mean(after), count_if_positive(gain), gain.size(), least(gain), most(gain))};
 }
 
-// Spheres split at the median eccentricity: the share where phi1' is better among the eccentric, phi2 among the round.
+// Spheres split at the median eccentricity: `right` counts where phi1' is better
+// among the eccentric, phi2 among the round.
 struct Split {
   std::size_t eccentric = 0, eccentric_right = 0, round = 0, round_right = 0, round_worse = 0;
   double correlation = 0;

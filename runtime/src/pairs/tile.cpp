@@ -104,7 +104,7 @@ void find(const Tile& tile, FoundPairs& found) {
   const PairLists lists = *tile.lists;
   HWY_ALIGN std::uint16_t candidates[kMaxStrips + kStripGroup];
   find_candidates(tile, candidates);
-  // Prefetched memory of the candidates arrives meanwhile.
+  // Tests the rest pairs first, while the candidates' memory arrives.
   for (std::size_t i = 0; i < lists.rest_count; i += kListLanes) {
     test_pairs(tile, lists.rest_pairs + i, hn::LoadU(kFloats, lists.rest_scales + i), kListLanes, found);
   }

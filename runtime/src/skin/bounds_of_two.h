@@ -35,7 +35,7 @@ inline HWY_NOINLINE void bound_by_bones(const ContactScene& scene) {
   }
 }
 
-// Intersects the box with the box around all spheres' boxes.
+// Intersects each sphere's box with `room` and returns the box around these intersections.
 inline HWY_NOINLINE Box narrow(const ContactScene& scene, const Box& room) {
   Box out = kEmptyBox;
   for (std::size_t s = 0; s < scene.sphere_count; ++s) {

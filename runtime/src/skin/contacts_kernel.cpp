@@ -26,7 +26,8 @@ namespace HWY_NAMESPACE {
 // Pairs of triangles, one from a register of each block. Each entry is the triangle's place in its register.
 using PlacePairs = PairList<kLanes * kLanes>;
 
-// Lane k: triangle j + k of `other` has a corner where one of `block` has one at rest.
+// Sets lane k if triangle j + k of `other` shares a corner's rest position with triangle `one` of `block`. Corners at
+// the same rest position have the same weld number, so nine comparisons of numbers decide it.
 HWY_INLINE hn::Mask<Floats> sharing(const Block& block, std::size_t one, const Block& other, std::size_t j) {
   constexpr Floats kFloats;
   constexpr hn::Rebind<std::uint32_t, Floats> kWelds;
@@ -39,15 +40,17 @@ HWY_INLINE hn::Mask<Floats> sharing(const Block& block, std::size_t one, const B
   return hn::RebindMask(kFloats, hn::Or(hn::Or(holding(0), holding(1)), holding(2)));
 }
 
-// Two clusters' triangles, loaded.
+// The loaded triangles of two clusters.
 struct BlockPair {
   const Block &a, &b;
   bool share_corners;  // may triangles of the two have a corner at the same position at rest?
   bool are_one;        // the same cluster of the same body
 };
 
-// The triangles of two registers of the blocks whose boxes touch; of one cluster each two once. Of neighbours most that
-// lies side by side shares a corner, which the collector would tell too, one by one.
+// Lists the pairs of triangles, kLanes of each block from i and j on, whose boxes touch. Triangles whose boxes do not
+// touch cannot intersect, so no contact is lost. Triangles that share a corner at rest are neighbours and never count:
+// they are dropped here, because the collector would reject them one by one. Within one cluster a pair is listed only
+// if the second triangle's number is larger, so each pair comes once.
 HWY_INLINE void find_places(const BlockPair& blocks, std::size_t i, std::size_t j, PlacePairs& out) {
   constexpr Floats kFloats;
   constexpr hn::Rebind<std::uint32_t, Floats> kTriangles;
@@ -71,7 +74,9 @@ HWY_INLINE void find_places(const BlockPair& blocks, std::size_t i, std::size_t 
   out.finish();
 }
 
-// This and what calls it return true at the first contact, where that is all that is asked for.
+// Tests the listed pairs of two registers, kLanes at a time. Single precision drops the pairs that are certainly apart
+// and marks those that certainly intersect; the collector decides the rest exactly, so the result does not depend on
+// the width of the registers. With first_only, this function and its callers return true at the first contact.
 HWY_NOINLINE bool pair_registers(const BlockPair& blocks, std::size_t i, std::size_t j, bool first_only,
                                  ContactCollector& collector) {
   const Block &block = blocks.a, &other = blocks.b;
@@ -101,6 +106,8 @@ HWY_NOINLINE bool pair_registers(const BlockPair& blocks, std::size_t i, std::si
   return false;
 }
 
+// Tests all registers of one block against all of the other. Numbers ascend within a block: in one cluster, a register
+// whose last number is not above the first of the other holds no later triangle and is skipped.
 HWY_INLINE bool pair_triangles(const BlockPair& blocks, bool first_only, ContactCollector& collector) {
   const Block &block = blocks.a, &other = blocks.b;
   for (std::size_t i = 0; i < block.count; i += kLanes) {
@@ -117,7 +124,8 @@ HWY_INLINE bool pair_triangles(const BlockPair& blocks, bool first_only, Contact
   return false;
 }
 
-// Two clusters that are loaded; or one, with itself.
+// Loads and tests two clusters, or one with itself. Only triangles of a that reach into b's box are loaded, then only
+// those of b that reach into the box around them; triangles outside these boxes cannot intersect.
 HWY_NOINLINE bool pair_clusters(const Bodies& bodies, std::size_t a, std::size_t b, ContactCollector& collector) {
   Block block, other;
   return load_block(bodies.a, a, BoxProbe(box_of_span(bodies.b, b)), block) &&

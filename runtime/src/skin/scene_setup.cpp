@@ -64,7 +64,7 @@ BoneSize bone_size(const BoneMatrices& bones, std::size_t bone) {
   return {std::sqrt(most), std::max({std::abs(t[0]), std::abs(t[bones.row]), std::abs(t[2 * bones.row])})};
 }
 
-// Prepares the data beside the matrices that bounds by bones read of the pose.
+// Prepares bounds by bones: marks every group as not bounded, and stores each bone's size and its matrix by columns.
 void prepare_bounds(const AssetView& asset, ContactScene& scene) {
   const BoneMatrices& bones = scene.skin.bones;
   std::memset(scene.is_group_bounded, 0, asset.skin().bounds_term_counts.size);

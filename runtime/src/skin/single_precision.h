@@ -104,12 +104,14 @@ struct Sides {
   }
 };
 
-// The pairs of triangles that single precision can decide.
+// One bit a lane: `apart` if the two triangles certainly do not intersect, `meeting` if they certainly do. A lane with
+// neither bit needs the exact test.
 struct Verdicts {
   std::uint64_t apart, meeting;
 };
 
-// Each lane's two triangles, as exact_crossing.h does it. Lanes that are not wanted may be left open.
+// Classifies each lane's two triangles by the test of exact_crossing.h. A sign counts only if its value exceeds the
+// rounding error's bound. Lanes that are not wanted may stay undecided.
 HWY_INLINE Verdicts classify(const GatheredTriangles& first, const GatheredTriangles& second, std::uint64_t wanted) {
   Vector3 a[3] = {first.corner(0), first.corner(1), first.corner(2)};
   Vector3 b[3] = {second.corner(0), second.corner(1), second.corner(2)};

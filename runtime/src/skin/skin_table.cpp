@@ -285,7 +285,7 @@ class Filler {
     }
   }
 
-  // Visits the overlap of the runs of one part with the clusters.
+  // Calls visit(part, run) for each run of consecutive triangles of one part within a cluster.
   template <typename Visit>
   void for_part_runs(const Visit& visit) const {
     for (std::uint32_t c = 0; c < out_.clusters.size; ++c) {

@@ -11,7 +11,7 @@ namespace {
 double least_of(double a, double b, double c) { return std::min(a, std::min(b, c)); }
 double greatest_of(double a, double b, double c) { return std::max(a, std::max(b, c)); }
 
-// One search for the time at which the corners of triangles a and b come close.
+// The moves of the corners of triangles a and b along one CornerPaths, relative to each other.
 class Pass {
  public:
   explicit Pass(const CornerPaths& way) : way_(way) {

@@ -106,7 +106,7 @@ HWY_INLINE bool pass_by(const Box& start_a, const Box& end_a, const Box& start_b
   return first > last;
 }
 
-// Direction between the middles of the two boxes, each the mean of its start and its end.
+// Direction from box a's middle to box b's, summed over the start and the end of the step. Its length has no meaning.
 HWY_INLINE void middle_direction(const Box& start_a, const Box& end_a, const Box& start_b, const Box& end_b,
                                  float (&direction)[3]) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
