@@ -18,7 +18,7 @@ using StepTable = TableOfParts<StepEntry>;
 
 // A body on its way.
 struct StepBody {
-  Skin skin;
+  FilteredSkin skin;
   BodyMotion* motion;
   std::uint16_t*
       parts;  // scratch memory: of each cluster the part of all its triangles, or kSeveral; kUnknown at first

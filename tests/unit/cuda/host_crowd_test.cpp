@@ -226,7 +226,7 @@ TEST_CASE("where there is no device, or no driver for it, a host crowd says so a
   }
 }
 
-TEST_CASE("each failure of the device is told, leaves nothing behind, and can be got over") {
+TEST_CASE("each failure of the device is reported, leaves nothing behind, and can be got over") {
   const OpenedAsset opened(moment_asset(20, 4, 3).parts);
   const Poses poses(opened.asset, 40, 5);
   for (const int most_shared_bytes : {227 * 1024, 4 * 1024}) {

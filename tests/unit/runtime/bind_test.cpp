@@ -250,7 +250,7 @@ TEST_CASE("in the bind pose all bones have the model's matrix; the first that ha
   wrong.bone_layout = SC_ROWS_3X4;
   wrong.bone_stride = 0;
   CHECK(check(wrong) == SC_OTHER_BIND);
-  // A refused pose is told by its field.
+  // A refused pose is reported with its field.
   Pose short_pose = pose_of(bones);
   short_pose.bone_count = 2;
   CHECK(check(short_pose) == sc_status{SC_TOO_SMALL, SC_FIELD_BONE_COUNT});

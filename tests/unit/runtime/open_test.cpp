@@ -209,7 +209,7 @@ TEST_CASE("an asset that fails to open is closed, whatever it was before") {
   CHECK(sc_asset_is_open(&asset) == 0);
 }
 
-TEST_CASE("a program compiled with other headers is refused, and told both versions") {
+TEST_CASE("a program compiled with other headers is refused with a message that names both versions") {
   const OpenedAsset opened(random_asset(5, 8).parts);
   Asset asset;
   char message[160] = "";
