@@ -16,12 +16,12 @@ struct StepEntry {
 };
 using StepTable = TableOfParts<StepEntry>;
 
-// A body on its way.
+// One body during the step.
 struct StepBody {
   FilteredSkin skin;
   BodyMotion* motion;
-  std::uint16_t*
-      parts;  // scratch memory: of each cluster the part of all its triangles, or kSeveral; kUnknown at first
+  // Scratch memory: for each cluster the part of all its triangles, or kSeveral; kUnknown at first.
+  std::uint16_t* parts;
 
   static constexpr std::uint16_t kSeveral = 0xFFFE, kUnknown = 0xFFFF;
   std::uint16_t part_of(std::size_t cluster);
