@@ -4,7 +4,7 @@
 //   scripts/class_sheet.mjs build/release/bin/spherechain OUT [--seed N] CHARACTER[+MOTION]...
 //   scripts/class_sheet.mjs build/release/bin/spherechain OUT --deepest CHARACTER[+MOTION]...
 // Writes 50 of each, by the seed (2), evenly over the characters, to OUT: large pictures to judge, mixed and without
-// class and depth (evaluate_1.png ..., three contacts each), table.json, and a sheet of small ones of each group. With --deepest: large pictures of
+// class and depth (judge_1.png ..., three contacts each), table.json, and a sheet of small ones of each group. With --deepest: large pictures of
 // the ten pairs of body parts of each character that penetrate deepest. A MOTION that ends in .json is a pose file.
 // Pages in OUT/pages are used again: delete them when the tool has changed. Needs Chromium (CHROMIUM names another one).
 // A part is blue, the other orange, the line where they cross black. Large pictures: close up, from another side with the

@@ -3,8 +3,8 @@
 import fs from 'node:fs';
 import path from 'node:path';
 import { person } from './person.mjs';
-import { checkSchemas, judgePhysics } from './evaluate_physics.mjs';
-import { judgeVrm } from './evaluate_vrm.mjs';
+import { checkSchemas, judgePhysics } from './judge_physics.mjs';
+import { judgeVrm } from './judge_vrm.mjs';
 import { posedColliders, run } from './poses.mjs';
 import { readGlb } from './glb.mjs';
 
