@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the paper says, judged by the run's tables and nothing else.
+// The claims of the paper, evaluated on the tables of the run and nothing else.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the paper says of the GPU, judged by figure16_medians.csv.
+// The claims of the paper about the GPU, evaluated on figure16_medians.csv.
 #pragma once
 
 #include "claims.h"

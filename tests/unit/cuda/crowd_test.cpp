@@ -100,7 +100,7 @@ void check_touching(unsigned count) {
 
 }  // namespace
 
-TEST_CASE("spheres that just touch, or just do not, near the origin and far from it, are told apart as on the CPU") {
+TEST_CASE("spheres that just touch, or just do not, near the origin and far from it, are distinguished as on the CPU") {
   for (const unsigned spheres : {41U, 60U, 77U}) {
     CAPTURE(spheres);
     check_touching(spheres);

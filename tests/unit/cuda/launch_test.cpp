@@ -70,7 +70,7 @@ TEST_CASE("groups go to shared memory where it is large enough, and else to as m
   CHECK(plan[Kernel::kSpheres].shared_bytes == block);
 }
 
-TEST_CASE("too many groups, none at all and a null list are told apart") {
+TEST_CASE("too many groups, none at all and a null list are distinguished") {
   const OpenedAsset small(random_asset(9, 2).parts);
   const std::vector<std::uint64_t> table = table_of(small.asset, SC_RADIUS_FIT);
   const Group group(table, 1);
