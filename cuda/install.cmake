@@ -1,4 +1,4 @@
-# What a game with crowds on the GPU links besides the runtime: `cmake --install <build> --component cuda`.
+# Installs the library that a game with crowds on the GPU also links: `cmake --install <build> --component cuda`.
 # spherechainConfig.cmake (runtime/) finds it there.
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/spherechain)
 install(TARGETS spherechain_cuda EXPORT spherechain_cuda ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT cuda)

@@ -1,4 +1,4 @@
-# What a game links: `cmake --install <build> --component sdk` installs this and nothing of the baker. In a
+# Installs the files that a game links, and nothing of the baker: `cmake --install <build> --component sdk`. In a
 # shared build the components runtime and dev are the same in two parts, for Debian's packages: what programs run with, and
 # what they are built with. Not with CUDA: its targets may refer to one export of the runtime alone.
 include(CMakePackageConfigHelpers)

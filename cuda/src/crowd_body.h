@@ -73,8 +73,8 @@ struct RunThread {
   }
 };
 
-// What block `first` of a launch does if its memory is scratch: every scratch_blocks-th block of the group. make_run(b)
-// makes the `run` of block b.
+// Runs block `first` of a launch whose blocks work in scratch memory: it takes every scratch_blocks-th block of the
+// group. make_run(b) makes the `run` of block b.
 template <typename MakeRun>
 SPHERECHAIN_HD void run_blocks_in_scratch(const GroupView& v, std::uint32_t first, const MakeRun& make_run) {
   const Shared memory(static_cast<unsigned char*>(v.scratch) + first * v.layout.size, v.layout);

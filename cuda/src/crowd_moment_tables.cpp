@@ -65,7 +65,7 @@ struct Union {
 // for the rest of a run.
 constexpr std::int64_t kGramCost = 48, kAskingCost = 4, kRunCost = 64;
 
-// What one run for both saves over two.
+// The cost that one run for both members saves over two runs.
 std::int64_t saved(const MomentTables& tables, const Member& a, const Member& b) {
   const Member both[] = {a, b};
   const std::int64_t common = pairs_of(a.bone_count + b.bone_count - Union(tables, {both, 2}).count);

@@ -26,9 +26,9 @@ SPHERECHAIN_HD void for_each_figure(bool is_self, const Visit& visit) {
   }
 }
 
-// Of a bone with itself without the figures below the diagonal. Their moments are 0, and to leave them out changes no
-// radius: the sign of a sum of zeros does not matter, and where a figure below the diagonal is not finite, its twin
-// above is not either.
+// For a bone with itself, the figures below the diagonal are left out. Their moments are 0, so no radius changes: the
+// sign of a sum of zeros does not matter, and where a figure below the diagonal is not finite, its twin above is not
+// either.
 SPHERECHAIN_HD Gram gram_of(const Matrix& a, const Matrix& b, bool is_self) {
   Gram out;
   for_each_figure<0, 1>(is_self, [&](std::size_t row, std::size_t column) {

@@ -53,7 +53,7 @@ SPHERECHAIN_HD bool touch(const Float4& p, const Float4& q, float scale) {
   return ((dx * dx + dy * dy) + dz * dz) < t * t && squared <= FLT_MAX;
 }
 
-// Of the pair a < b. `pitch`: from one half word to the next.
+// Sets the bits of the pairs a < b. `pitch` is the distance from one half word to the next.
 SPHERECHAIN_HD void set_pair_bits(const GroupView& v, const Shared& shared, std::uint32_t a, std::uint32_t b,
                                   std::uint32_t pitch, std::uint32_t column) {
   if (v.bits != nullptr) {

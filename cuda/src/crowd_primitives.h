@@ -44,7 +44,7 @@ SPHERECHAIN_HD void set_bits(std::uint32_t* to, std::uint32_t value) { atomicOr(
 // For several lanes that write the same value.
 SPHERECHAIN_HD void set_alike(std::uint32_t& to, std::uint32_t value) { to = value; }
 
-// Of a word that is not 0.
+// Index of the lowest set bit. The word must not be 0.
 SPHERECHAIN_HD std::uint32_t lowest_bit(std::uint32_t word) { return __ffs(static_cast<int>(word)) - 1; }
 
 SPHERECHAIN_HD std::uint32_t count_bits(std::uint32_t word) { return static_cast<std::uint32_t>(__popc(word)); }

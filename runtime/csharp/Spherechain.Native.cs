@@ -332,7 +332,7 @@ namespace Spherechain
         public uint Joint;
         public PenetrationClass Kind;
         public Vec3 Direction;
-        /// <summary>measures.depth, or up to a quarter more where `previous` keeps the direction</summary>
+        /// <summary>measures.depth; up to 1.5 times as much where `previous` keeps the direction</summary>
         public float Distance;
         /// <summary>of the line where the parts cross; of the ground: of the box</summary>
         public Vec3 Centre;

@@ -183,7 +183,7 @@ export interface Query {
 /** `total` is larger than `length` where there was no room, or the query has a limit. */
 export type Results<T> = T[] & { total: number };
 
-/** What a person would call it; docs/concepts.md has the rule. 'penetration' and 'deep_fold' are faults. */
+/** The class of a contact, in a person's words; docs/concepts.md has the rule. 'penetration' and 'deep_fold' are faults. */
 export type PenetrationClass = 'rest' | 'shell' | 'touch' | 'fold' | 'deep_fold' | 'penetration';
 
 /** Two body parts that intersect. */
@@ -199,7 +199,7 @@ export interface Penetration {
   direction: Float32Array;
   /** Measures.depth, or up to a quarter more where `previous` keeps the direction. */
   distance: number;
-  /** Of the line in which the parts cross, and a box around it; of the ground: a box of the skin below it, and its centre. */
+  /** Centre of the line in which the parts cross, and a box around that line. For the ground: a box of the skin below it, and its centre. */
   centre: Float32Array;
   low: Float32Array;
   high: Float32Array;
@@ -216,9 +216,9 @@ export interface SkinPoint { position: Float32Array; triangle: number; weights: 
 export interface Measures {
   /** > 0: the way out. `depth / metre` is in metres, also where the palette scales the character. */
   depth: number;
-  /** Of the one part inside the other, in cubed units. */
+  /** Volume of one part inside the other, in cubed units. */
   volume: number | null;
-  /** Of the line in which the parts cross. */
+  /** Length of the line in which the parts cross. */
   contourLength: number;
   /** Shares of that line: that can be seen from outside (1 where it was not looked at); that touches at rest. */
   visible: number;
@@ -227,7 +227,7 @@ export interface Measures {
   facing: number;
   /** Between the two spots at rest, a share of the height; Infinity of two bodies. */
   restDistance: number;
-  /** Of the thinner part, there. */
+  /** Thickness of the thinner part at the contact. */
   thickness: number | null;
   /** depth / thickness * visible length / side of a square like the smaller part. */
   swallowed: number | null;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// write_palettes MODEL.glb OUT: what an engine's animation system would give Hello.cs. Little-endian: the numbers of joints and
-// frames (int32); each joint's name (int32 length, UTF-8) and inverse bind matrix; the palette at rest; a palette a frame of
-// the first clip, 30 a second. Matrices are 16 floats, SC_COLUMNS_4X4.
+// write_palettes MODEL.glb OUT: what an engine's animation system would give Hello.cs. Little-endian: the numbers of
+// joints and frames (int32); each joint's name (int32 length, UTF-8) and inverse bind matrix; the palette at rest; a
+// palette a frame of the first clip, 30 a second. Matrices are 16 floats, SC_COLUMNS_4X4.
 #include <cstdint>
 #include <cstdio>
 #include <cstring>

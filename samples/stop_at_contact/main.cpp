@@ -20,7 +20,7 @@ class Player {
  public:
   Player(const Model& model, const samples::GltfCharacter& clips) : model_(model), clips_(clips), body_(model) {}
 
-  // Of the contacts that this sample watches, the one of the most triangles at this time of the clip; or null.
+  // The contact with the most triangles at this time of the clip, among those that this sample watches; or null.
   const PartContact* worst_contact(double seconds) {
     body_.set_pose(samples::pose_of(clips_.palette(0, seconds)));
     const Contacts contacts = body_.contacts();

@@ -33,7 +33,7 @@ Device device();
 
 class Runner {
  public:
-  // Memory for `pair_capacity` pairs.
+  // Allocates memory for `pair_capacity` pairs.
   Runner(const Tables& tables, std::uint32_t pair_capacity);
   ~Runner();
   Runner(const Runner&) = delete;

@@ -31,7 +31,7 @@ struct Scene {
   std::uint32_t rest_pair_count;
 };
 
-// The tables that the threads read of an asset, in the host's memory. The asset, open, must outlive it.
+// The asset's tables that the threads read, in the host's memory. The open asset must outlive them.
 struct Tables {
   Tables(const AssetView& asset_, Radius radius)
       : asset(&asset_), rest_pairs(asset_.rest_pairs(radius)), chain_begin{0} {
@@ -58,8 +58,7 @@ struct Tables {
   std::uint32_t longest_chain = 0;
 };
 
-// The pairs that were found, in no order: M1's raw list, a pair once for each chain that holds it; M2's pairs, as of
-// chain 0.
+// The pairs found, in no order. M1 lists a pair once for each chain that holds it; M2's pairs belong to chain 0.
 struct PairList {
   ChainPair* entries;
   std::uint32_t capacity;

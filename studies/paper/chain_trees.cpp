@@ -8,7 +8,7 @@ namespace {
 
 using Bits = std::vector<std::uint64_t>;
 
-// The bit of a pair a <= b, a sphere with itself included.
+// Bit of a pair a <= b; a sphere with itself has one too.
 constexpr std::size_t node_bit(std::size_t a, std::size_t b) { return b * (b + 1) / 2 + a; }
 
 // A parent's radius is larger by this share. The distance of two centres, computed in float, is off by less than four
@@ -59,7 +59,7 @@ Bits skipped_leaves(const AssetView& asset, const std::vector<std::uint32_t>& or
   return out;
 }
 
-// The rest pairs of two spheres in the trees, as places there. Ignored ones are no rest pairs.
+// Rest pairs of spheres, as places in the trees. Ignored pairs are no rest pairs.
 std::vector<RestPair> rest_pairs_in_order(const AssetView& asset, Radius radius,
                                           const std::vector<std::uint32_t>& order) {
   const auto nowhere = static_cast<std::uint32_t>(order.size());

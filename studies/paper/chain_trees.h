@@ -34,8 +34,8 @@ class ChainTrees {
   // Bottom up; every frame, before all_pairs().
   void refit(const Sphere* spheres);
 
-  // The same pairs as PlainDetection::all_pairs() finds in the spheres of the last refit. test_count: tests of two
-  // spheres, parents' too.
+  // Finds the same pairs as PlainDetection::all_pairs() in the spheres of the last refit. test_count counts the tests
+  // of two spheres, parents included.
   PlainResult all_pairs() const;
 
   const std::vector<Level>& levels() const { return levels_; }  // the last one has the roots

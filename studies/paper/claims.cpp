@@ -30,7 +30,7 @@ std::size_t count_if_positive(const std::vector<double>& values) {
   return static_cast<std::size_t>(std::count_if(values.begin(), values.end(), [](double v) { return v > 0; }));
 }
 
-Verdict judge_adjustment(const Results& results) {
+Verdict evaluate_adjustment(const Results& results) {
   const Table& t = results.accuracy.spheres;
   const std::vector<double> before = t.numbers("vertices_phi1_mm"), after = t.numbers("vertices_phi1_adjusted_mm");
   const std::vector<double> gain = difference(before, after);
@@ -41,7 +41,8 @@ Verdict judge_adjustment(const Results& results) {
                       mean(before), mean(after), count_if_positive(gain), gain.size(), least(gain), most(gain))};
 }
 
-// Spheres split at the median eccentricity: where phi1' is better among the eccentric, phi2 among the round.
+// Spheres split at the median eccentricity: `right` counts where phi1' is better
+// among the eccentric, phi2 among the round.
 struct Split {
   std::size_t eccentric = 0, eccentric_right = 0, round = 0, round_right = 0, round_worse = 0;
   double correlation = 0;
@@ -62,7 +63,7 @@ Split split_by_shape(const Table& spheres, const std::string& phi2) {
   return out;
 }
 
-Verdict judge_shape(const Results& results, const std::string& phi2) {
+Verdict evaluate_shape(const Results& results, const std::string& phi2) {
   const Table& t = results.accuracy.spheres;
   const Split split = split_by_shape(t, phi2);
   const auto three_quarters = [](std::size_t right, std::size_t of) { return 4 * right >= 3 * of; };
@@ -97,7 +98,7 @@ Table all_depths(const Results& results) {
   return out;
 }
 
-Verdict judge_sphere_count(const Results& results) {
+Verdict evaluate_sphere_count(const Results& results) {
   const Table t = all_depths(results);
   const std::vector<double> ours = ratio(t.numbers("chain_entries_table1"), t.numbers("spheres"));
   const double stated = kChainCount * kStatedChain / kStatedSpheres,
@@ -135,7 +136,7 @@ Turn turn_over(const Table& series, const std::string& m1, const std::string& m2
                       crossings.empty() ? "no turn" : "turning " + crossings)};
 }
 
-Verdict judge_fewer_tests(const Results& results) {
+Verdict evaluate_fewer_tests(const Results& results) {
   const Table readings = compare_readings(results);
   std::size_t fewer = 0;
   std::string list;
@@ -149,7 +150,7 @@ Verdict judge_fewer_tests(const Results& results) {
                       readings.rows.size(), list)};
 }
 
-Verdict judge_turn_over(const Results& results) {
+Verdict evaluate_turn_over(const Results& results) {
   const Table core = results.sweep.sweep.where("series", kDepthPaper);
   const Table whole = results.sweep.sweep.where("series", kDepthExtremities);
   bool turns = false;
@@ -169,7 +170,7 @@ Verdict judge_turn_over(const Results& results) {
   return {graded(!turns, true), finding};
 }
 
-Verdict judge_overlaps(const Results& results) {
+Verdict evaluate_overlaps(const Results& results) {
   const Table m1 = results.running_time.where("method", "M1"), m2 = results.running_time.where("method", "M2");
   const std::vector<double> more = difference(m1.numbers("overlaps"), m2.numbers("overlaps"));
   const double sum1 = mean(m1.numbers("overlaps")), sum2 = mean(m2.numbers("overlaps"));
@@ -179,7 +180,7 @@ Verdict judge_overlaps(const Results& results) {
                       sum2, count_if_positive(more), more.size(), count_if_positive(less))};
 }
 
-Verdict judge_m2_faster(const Results& results) {
+Verdict evaluate_m2_faster(const Results& results) {
   const Table& t = results.running_time;
   const auto us = [&](const char* method) { return t.where("method", method).numbers("us"); };
   const std::vector<double> ours = ratio(us("M1"), us("M2")), full = ratio(us("M1 full"), us("M2 full"));
@@ -191,7 +192,7 @@ Verdict judge_m2_faster(const Results& results) {
                       median(us("M1 full")), median(us("M2 full")), median(us("all_pairs")))};
 }
 
-Verdict judge_animation(const Results& results) {
+Verdict evaluate_animation(const Results& results) {
   const Table series = all_depths(results);
   bool same = true, grows = true;
   std::string finding;
@@ -216,7 +217,7 @@ Verdict judge_animation(const Results& results) {
   return {graded(same && grows, same || grows), finding};
 }
 
-Verdict judge_pivots(const Results& results) {
+Verdict evaluate_pivots(const Results& results) {
   std::string finding;
   std::size_t better = 0, rules = 0;
   for (const auto& [series, name] :
@@ -236,7 +237,7 @@ Verdict judge_pivots(const Results& results) {
   return {rules == 0 ? kNotRun : graded(better == rules, better > 0), finding};
 }
 
-Verdict judge_per_level(const Results& results) {
+Verdict evaluate_per_level(const Results& results) {
   const Table t = results.sweep.sweep.where("series", kPerLevel);
   if (t.empty()) return {kNotRun, ""};
   const std::vector<double> f = t.numbers("torso_f_mean_mm");
@@ -316,61 +317,61 @@ Table compare_readings(const Results& results) {
   return out;
 }
 
-Table check_claims(const Results& results) {
+Table evaluate_claims(const Results& results) {
   Table out{"claims", {"id", "where", "paper_says", "rule", "verdict", "finding"}, {}};
   const auto add = [&](const char* id, const char* where, const char* says, const char* rule, Verdict verdict) {
     out.add({id, where, says, rule, verdict.verdict, verdict.finding});
   };
   add("adjustment", "section 6", "The sphere adjustment enhances the accuracy of phi1.",
       "Mean |F| over the vertices is lower after it: at no torso sphere higher; in part: on average.",
-      judge_adjustment(results));
+      evaluate_adjustment(results));
   add("shape", "section 6, Figure 13",
       "phi1' has a better approximation than phi2 in regions with non circular shape, otherwise phi2 has.",
       "Spheres split at the median eccentricity of the half-section they stand for, compared in mean |F| at its rays: "
       "phi1' better at three quarters of the more eccentric, phi2 at three quarters of the others, rank correlation at "
       "least 0.5; in part: one of the two halves.",
-      judge_shape(results, "rays_phi2_mm"));
+      evaluate_shape(results, "rays_phi2_mm"));
   add("shape_rays", "section 6, Figure 13", "The same, phi2 read as the ball around the rays' colliding points alone.",
-      "The same.", judge_shape(results, "rays_phi2_rays_mm"));
+      "The same.", evaluate_shape(results, "rays_phi2_rays_mm"));
   add("per_level", "section 3.2", "Two or more spheres a level approximate better than one.",
       "Mean |F| over the torso falls from one to two and from two to three; in part: from one to two.",
-      judge_per_level(results));
+      evaluate_per_level(results));
   add("sphere_count", "section 6", "The six chains of 23 spheres contain 138, more than the mesh's 80.",
       "138 / 80 entries a sphere lie in the range that Table 1 gives over our bakes of all penetration depths.",
-      judge_sphere_count(results));
+      evaluate_sphere_count(results));
   add("overlaps", "section 6, Figure 15", "The number of overlaps is bigger in M1.",
-      "More a frame on average, and in no frame fewer; in part: on average.", judge_overlaps(results));
+      "More a frame on average, and in no frame fewer; in part: on average.", evaluate_overlaps(results));
   add("fewer_tests", "section 6", "M2 needs fewer tests than M1.",
-      "m^2 < n_c n^2 in every reading of the sphere count; in part: in some.", judge_fewer_tests(results));
+      "m^2 < n_c n^2 in every reading of the sphere count; in part: in some.", evaluate_fewer_tests(results));
   add("m2_faster", "section 6, Figure 15", "On the CPU M2 is faster than M1.",
       "Median over the frames, by plain loops: without ignored pairs, and over all pairs; in part: by one of the two.",
-      judge_m2_faster(results));
+      evaluate_m2_faster(results));
   add("turn_over", "section 6", "The same at 46 and at 80 spheres: M2 stays ahead whatever their number.",
-      "M1 needs more tests than M2 in every bake of both series; in part: in some.", judge_turn_over(results));
+      "M1 needs more tests than M2 in every bake of both series; in part: in some.", evaluate_turn_over(results));
   add("animation", "section 6", "The time depends on the number of spheres, not on the animation.",
       "The two animations' medians differ by at most a tenth, and time rises with the spheres (rank correlation at "
       "least "
       "0.9), for M1 and M2; in part: one of the two.",
-      judge_animation(results));
+      evaluate_animation(results));
   add("more_pivots", "sections 5.1 and 7", "More pivot polygons refit more accurately.",
       "The 95th percentile of the refitted sphere's distance (see the sweep) with the most pivots is at least a tenth "
       "below that with four, for "
       "both "
       "refit rules; in part: for one.",
-      judge_pivots(results));
+      evaluate_pivots(results));
   add("no_trees", "sections 1 and 5.2", "There are so few spheres that the chains need no hierarchy.",
       "At the two counts of baked chains nearest to 46 and 80, medians over the frames: the fastest tree, its refit "
       "included, not a twentieth below the faster of M1 and M2 in plain loops; in part: at one of them.",
-      judge_no_trees(results.trees));
+      evaluate_no_trees(results.trees));
   const Table gpu = gpu_medians(results.gpu);
   add("gpu", "section 6, Figure 16", "On the GPU M1 takes less time than M2.",
       "At the two sphere counts nearest to 46 and 80, medians over the frames: M1's faster kernel at least a twentieth "
       "below M2's, the kernels alone and with launch and copies; in part: at one count, or by one of the times.",
-      gpu_m1_is_faster(gpu));
+      evaluate_gpu_m1_faster(gpu));
   add("gpu_many", "section 6", "Few spheres do not exploit the parallelism: about 10,000 or more are needed.",
       "The GPU, launch and copies included, behind one core of the CPU at every count below some 10,000 and ahead "
       "there; in part: behind at the fewest spheres, ahead at the most.",
-      gpu_needs_many(gpu));
+      evaluate_gpu_needs_many(gpu));
   return out;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks the paper's claims by the run's tables and nothing else.
+// The claims of the paper, evaluated on the tables of the run and nothing else.
 #pragma once
 
 #include <string>
@@ -38,7 +38,7 @@ struct Verdict {
 inline const char* graded(bool all, bool some) { return all ? kHolds : some ? kInPart : kFails; }
 
 // claims.csv: id, where, the paper says, rule, verdict, finding.
-Table check_claims(const Results& results);
+Table evaluate_claims(const Results& results);
 // readings.csv: the paper's two sphere counts and our bakes nearest to them.
 Table compare_readings(const Results& results);
 // defaults.csv: setting, current, follows, rule, finding.

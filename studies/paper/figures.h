@@ -16,7 +16,7 @@ Figure gpu_time_figure(const Results& results);      // Figure 16
 Figure gpu_count_figure(const Results& results);     // the same over the number of spheres
 Figure tree_figure(const Results& results);          // trees over the chains
 Figure sphere_count_figure(const Results& results);  // 46 or 80
-// The effect of a setting, a line a series; the last one names the colours.
+// The effect of a setting, one line a series; the last one names the colours.
 struct SweepLine {
   std::string series, label;
   Style style;

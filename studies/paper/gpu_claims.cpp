@@ -35,7 +35,7 @@ std::vector<double> counts_of(const Table& medians) {
 
 }  // namespace
 
-Verdict gpu_m1_is_faster(const Table& medians) {
+Verdict evaluate_gpu_m1_faster(const Table& medians) {
   if (medians.empty()) return without_gpu();
   const auto is_stated = [&](double spheres) {
     return spheres == medians.number(nearest_count(medians, kSummedSpheres), "spheres") ||
@@ -63,7 +63,7 @@ Verdict gpu_m1_is_faster(const Table& medians) {
   return {graded(leads == asked, leads > 0), finding};
 }
 
-Verdict gpu_needs_many(const Table& medians) {
+Verdict evaluate_gpu_needs_many(const Table& medians) {
   if (medians.empty()) return without_gpu();
   bool behind_below = true, behind_first = false, ahead_last = false;
   std::string finding = "Fastest kernel with launch and copies against the faster of M1 and M2 on one core of the CPU:";

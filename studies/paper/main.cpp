@@ -35,7 +35,7 @@ std::string machine() {
   return processor + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores, compiler " + __VERSION__;
 }
 
-// A quick run has fewer points, but all experiments.
+// A quick run has fewer points, but the same experiments.
 std::vector<Setting> settings(bool quick) {
   std::vector<Setting> out;
   const auto add = [&](const char* series, const char* profile, const std::string& key, std::vector<double> values,
@@ -115,7 +115,7 @@ void run(const Options& options) {
   write_asset("balanced.sphc", study.balanced());
   if (!options.docs.empty()) write_docs(options.docs, results);
   progress("wrote " + options.out + "/index.html");
-  const Table claims = check_claims(results);
+  const Table claims = evaluate_claims(results);
   for (std::size_t i = 0; i < claims.rows.size(); ++i) {
     std::printf("%-16s %s\n", claims.word(i, "verdict").c_str(), claims.word(i, "paper_says").c_str());
   }

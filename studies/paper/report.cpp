@@ -126,11 +126,11 @@ std::vector<Section> sections(const Results& results) {
   out.push_back({"What the paper claims",
                  {"A rule computes each verdict from the run's tables. The rule stands beside it."},
                  {},
-                 {show(check_claims(results), {{"paper_says", "The paper says"},
-                                               {"verdict", "Verdict"},
-                                               {"finding", "Finding"},
-                                               {"rule", "Rule"},
-                                               {"where", "Where"}})}});
+                 {show(evaluate_claims(results), {{"paper_says", "The paper says"},
+                                                  {"verdict", "Verdict"},
+                                                  {"finding", "Finding"},
+                                                  {"rule", "Rule"},
+                                                  {"where", "Where"}})}});
   out.push_back(
       {"Figure 13: the three fits of the torso",
        {"phi1 is the sphere of the climbing disk. phi1' is the same after the sphere adjustment. phi2 is the minimum "
@@ -293,7 +293,7 @@ std::string markdown(const ShownTable& table) {
 }
 
 std::vector<Table> tables(const Results& results) {
-  return {check_claims(results),     derive_defaults(results),
+  return {evaluate_claims(results),  derive_defaults(results),
           results.accuracy.rays,     results.accuracy.spheres,
           results.sweep.accuracy,    results.running_time,
           compare_readings(results), results.sweep.sweep,

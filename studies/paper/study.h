@@ -31,7 +31,7 @@ class Study {
   const Bake& balanced() const { return balanced_; }
   const std::vector<Animation>& animations() const { return animations_; }
   double mm() const { return 1000 * paper_.character.metres_per_unit; }
-  // The part that the paper covers: the body without head, hands and feet.
+  // Marks the region that the paper covers: the body without head, hands and feet.
   const std::vector<bool>& core() const { return core_; }
 
  private:

@@ -21,8 +21,8 @@ struct Cell {
   Cell(const char* value) : word(value) {}
 };
 
-// The figures of an experiment: a CSV file's contents, and all that figures and verdicts are made from. Units are in
-// the columns' names.
+// The result of an experiment, as in a CSV file. All figures and verdicts are made from tables. Units are in the
+// columns' names.
 struct Table {
   std::string name;  // of the file, without .csv
   std::vector<std::string> columns;

@@ -44,7 +44,7 @@ std::optional<double> wins_from(const Table& series, const char* tree, const cha
 
 }  // namespace
 
-Verdict judge_no_trees(const Table& trees) {
+Verdict evaluate_no_trees(const Table& trees) {
   const Table baked = trees.where("series", kBaked);
   if (baked.empty()) return {kNotRun, ""};
   std::size_t behind = 0;

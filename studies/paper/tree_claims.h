@@ -7,8 +7,8 @@
 
 namespace spherechain::paper {
 
-// The judgement over trees.csv (measure_trees).
-Verdict judge_no_trees(const Table& trees);
+// Evaluates the claim about trees on trees.csv (measure_trees).
+Verdict evaluate_no_trees(const Table& trees);
 
 // tree_wins.csv: a row a series and tree: the count from which on it is faster than M1, M2 and the product's job.
 Table tree_wins(const Table& trees);

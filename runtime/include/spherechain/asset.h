@@ -14,7 +14,7 @@ typedef struct sc_asset {
 
 SC_ENUM(sc_side){SC_SIDE_NONE = 0, SC_SIDE_LEFT = 1, SC_SIDE_RIGHT = 2}; /* the character's own */
 
-/* What a game moves the character by: a bone of the source's skeleton, or a joint of the automatic rig. */
+/* A bone of the source's skeleton, or a joint of the automatic rig: a game moves the character by these. */
 typedef struct sc_bone {
   const char* name;
   const float* inverse_bind; /* from the rest pose to the bone's space; of the asset: SC_ROWS_3X4 */

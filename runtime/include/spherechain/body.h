@@ -14,7 +14,7 @@
 typedef struct sc_body sc_body;
 
 typedef struct sc_body_def {
-  /* Room for pairs of triangles that intersect; 0: half of the model's triangles, and at least 4,096. Where more
+  /* Capacity for pairs of triangles that intersect; 0: half of the model's triangles, and at least 4,096. Where more
    * intersect, penetrations are found in several rounds, with the same results. If two parts alone have more, the first
    * so many of theirs are measured. */
   size_t max_triangles SC_ZERO;

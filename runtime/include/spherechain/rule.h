@@ -44,7 +44,7 @@ typedef struct sc_measures {
 } sc_measures;
 
 /* The limits of a class. A fault is what a person would mend; sc_default_rule() was tuned on pictures that people
- * judged (docs/concepts.md). Lengths are shares of the character's height, but for `touch_depth` and `touch_metres`. A
+ * classed (docs/concepts.md). Lengths are shares of the character's height, but for `touch_depth` and `touch_metres`. A
  * change of a default is a new version. */
 typedef struct sc_rule {
   uint32_t version;  /* SC_RULE_VERSION; others are refused */
@@ -83,7 +83,7 @@ using PenetrationClass = sc_penetration_class;
 using Relation = sc_relation;
 using Measures = sc_measures;
 using Rule = sc_rule;
-/* What a person sees as a fault. */
+/* True for the classes that a person sees as a fault. */
 inline bool is_fault(PenetrationClass kind) noexcept { return kind >= SC_CLASS_DEEP_FOLD; }
 }  // namespace spherechain
 #endif

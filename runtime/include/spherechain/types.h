@@ -65,7 +65,7 @@ SC_ENUM(sc_target){
     SC_TARGET_NEON = 6,   SC_TARGET_WASM = 7, /* WebAssembly's SIMD of 128 bits */
 };
 
-/* What went wrong. */
+/* Error codes. */
 SC_ENUM(sc_code){
     SC_OK = 0,
     SC_OVERFLOW = 1,     /* an output buffer is too small; the job's counts say how many entries there are */
@@ -144,7 +144,7 @@ SC_ENUM(sc_field){
     SC_FIELD_PART_PAIRS = 48,
 };
 
-/* What every operation returns: what went wrong, and with which field. */
+/* The result of every operation: an error code, and the field that caused it. */
 typedef struct sc_status {
   sc_code code;
   sc_field field;

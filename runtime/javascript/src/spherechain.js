@@ -562,7 +562,7 @@ function checkJoints(joints) {
   return matrixOf(joints[first]).length;
 }
 
-// Of a value that is refused: "null", "a Promise", "an Array of 2".
+// Describes the type of a refused value: "null", "a Promise", "an Array of 2".
 function kindOf(value) {
   if (typeof value === 'string') return `"${value}"`;
   if (typeof value === 'function') return 'a function';

@@ -21,7 +21,7 @@ schema::Vec3 cross(const schema::Vec3& a, const schema::Vec3& b) {
   return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
 }
 
-// What is wrong with a struct in a table; null: nothing. FlatBuffers lets such structs be missing.
+// Returns the error of a struct in a table, or null if there is none. FlatBuffers lets such structs be missing.
 template <typename Floats>
 const char* fault_of(const Floats* value) {
   return value == nullptr ? "missing" : is_finite(*value) ? nullptr : "not finite";

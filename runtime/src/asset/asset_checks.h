@@ -26,7 +26,7 @@ bool skin_values_are_valid(const AssetView& asset, SkinSizes& sizes, Message& me
 // of an asset that is valid otherwise.
 bool figures_are_in_range(const AssetView& asset, std::size_t size, Message& message);
 
-// Of a float, or of a struct that holds nothing but floats.
+// Takes a float, or a struct that holds only floats.
 template <typename Floats>
 bool is_finite(const Floats& value) {
   static_assert(sizeof(Floats) % sizeof(float) == 0 && alignof(Floats) == alignof(float));

@@ -34,7 +34,7 @@ class Stream {
     return last_ >= 0 && last_ <= 0xFFFFFFFF;
   }
 
-  // Of a stream that was verified.
+  // Reads the next number. The stream must have been verified.
   std::uint32_t next() {
     std::uint32_t value = 0;
     read(value);

@@ -35,7 +35,7 @@ std::size_t scratch_words_of(const sc_model& model, const sc_model& other, std::
   return words;
 }
 
-// Of null words it only counts them.
+// Lays out the body's arrays in `words`. If `words` is null, it only counts them.
 std::size_t lay_out(sc_body& body, const sc_body_def& def, std::uint64_t* words) {
   WordMemory memory(words);
   const AssetView& asset = asset_of(body);
@@ -117,8 +117,8 @@ sc_status sc_create_body(const sc_model* model, const sc_body_def* def, sc_body*
     return refuse(SC_NULL, model == nullptr ? SC_FIELD_ASSET : SC_FIELD_OUTPUT);
   }
   const sc_body_def wanted = def == nullptr ? sc_body_def{} : *def;
-  constexpr std::size_t kMost = std::size_t{1} << 31;
-  if (wanted.max_triangles > kMost || wanted.max_penetrations > kMost) {
+  constexpr std::size_t kCountMax = std::size_t{1} << 31;
+  if (wanted.max_triangles > kCountMax || wanted.max_penetrations > kCountMax) {
     return refuse(SC_BAD_VALUE, SC_FIELD_TRIANGLES);
   }
   sc_body made{};

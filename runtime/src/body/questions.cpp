@@ -129,7 +129,8 @@ Status find_contacts(sc_body& body, const sc_body* other, const sc_query& query,
   return run_contacts(body, query, lists_all, is_round, job);
 }
 
-// Of a body with itself they are kept from question to question. Another body may be gone, with a new one in its place.
+// Keeps a body's contacts with itself between questions. Contacts with another body are not kept: it may have been
+// replaced by a new body at the same address.
 Status know_contacts(sc_body& body, const sc_body* other, const sc_query& query) {
   const bool is_kept = other == nullptr && query.filter == nullptr && query.part_pairs == nullptr;
   if (is_kept && body.has_contacts && body.contacts_scope == query.scope) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxCount = 0xFFFFFFFFU;  // products of counts cannot wrap
 
-// What the bones of one instance take.
+// Size of one instance's bone matrices, in bytes.
 std::size_t instance_bytes(const AssetView& asset, const CrowdJob& job) {
   return (asset.bone_count() - 1) * bone_stride(job.pose) + size_of(job.pose.bone_layout);
 }

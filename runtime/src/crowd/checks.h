@@ -13,7 +13,7 @@ std::size_t sphere_stride(const AssetView& asset, const CrowdJob& job);
 std::size_t bone_stride(const AssetView& asset, const CrowdJob& job);
 inline std::size_t task_count(const CrowdJob& job) { return job.task_count == 0 ? 1 : job.task_count; }
 
-// Of an asset that is open; the target aside.
+// Checks a job on an open asset, except for the job's target.
 Status check_crowd(const AssetView& asset, const CrowdJob& job);
 
 }  // namespace spherechain

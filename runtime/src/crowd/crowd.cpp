@@ -50,7 +50,7 @@ struct Crowd {
   RefitInputs bones = {};                    // where the job has bones
   bool list_only = false;                    // the second pass
 
-  // Of job.pairs, what a task lists into: its share, until all totals are known.
+  // Start of a task's share of job.pairs. The task lists its pairs there until all totals are known.
   std::size_t list_begin(std::size_t task) const { return job.pair_capacity / task_count * task; }
   std::size_t list_end(std::size_t task) const {
     return task + 1 == task_count || list_only ? job.pair_capacity : list_begin(task + 1);
@@ -65,7 +65,7 @@ struct Crowd {
     return std::min(job.instance_count,
                     batches / task_count * task * lanes + std::min(task, batches % task_count) * lanes);
   }
-  // Of a task that has run.
+  // Number of pairs that a task found. The task must have run.
   std::size_t pairs_of(std::size_t task) const { return static_cast<std::size_t>(scratch_of(task)[0]); }
   std::size_t pairs_before(std::size_t task) const {
     std::size_t sum = 0;

@@ -86,7 +86,7 @@ HWY_INLINE hn::Mask<Floats> overlap(const LaneSphere& p, const LaneSphere& q, fl
   return hn::And(hn::Lt(d2, hn::Mul(t, t)), hn::Le(hn::Mul(s, s), hn::Set(kFloats, FLT_MAX)));
 }
 
-// What is found of each lane's instance.
+// The results of each lane's instance.
 struct Found {
   LaneBatch& batch;
   hn::Mask<Floats> in_use;

@@ -57,7 +57,7 @@ inline constexpr std::size_t kMatrixFloats = 12;
 // The spheres that refit_from_moments() gives each instance.
 void refit_lanes(Target resolved, const LaneRefit& batch);
 
-// Of LaneRefit::products; 0 where there are no moments.
+// Size of LaneRefit::products in floats; 0 if the asset has no moments.
 std::size_t product_floats(const MomentTables& moments);
 
 }  // namespace spherechain

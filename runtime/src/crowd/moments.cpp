@@ -207,8 +207,8 @@ HWY_INLINE void add_pair(const float* product, const Moment* moments, std::size_
   }
 }
 
-// What columns kFirst and kFirst + 2 add to the mean squared distances of kSpheres spheres of the same bones, whose
-// moments follow each other: two columns of the halving tree.
+// Sums two columns of the halving tree: the shares of columns kFirst and kFirst + 2 in the mean squared distances of
+// kSpheres spheres. The spheres have the same bones, and their moments follow each other.
 template <std::size_t kSpheres, std::size_t kFirst>
 HWY_INLINE void sum_pairs(const LaneRefit& batch, const std::uint8_t* places, std::size_t bone_count,
                           const Moment* moments, Vector (&out)[kSpheres]) {

@@ -24,7 +24,7 @@ struct SweptBox {
   std::uint32_t body;
 };
 
-struct Box {
+struct WorldBox {
   Vec3 low, high;
 };
 
@@ -54,10 +54,10 @@ class PlacedBody {
     return {row(place_), row(place_ + 4), row(place_ + 8), stretch_ * s.radius};
   }
   // Around the spheres that can touch something: wider by more than a sphere's sides, or a sum of squares, are rounded.
-  Box box() const { return has_spheres() ? box_of_spheres() : box_of_corners(); }
+  WorldBox box() const { return has_spheres() ? box_of_spheres() : box_of_corners(); }
 
  private:
-  Box box_of_spheres() const {
+  WorldBox box_of_spheres() const {
     float low[3] = {FLT_MAX, FLT_MAX, FLT_MAX}, high[3] = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
     for (std::size_t i = 0; i < body_.sphere_count; ++i) {
       const Sphere s = sphere(i);
@@ -75,7 +75,7 @@ class PlacedBody {
     return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
   }
   // Around the box, as it was given or moved.
-  Box box_of_corners() const {
+  WorldBox box_of_corners() const {
     if (body_.transform == nullptr) {
       return {body_.low, body_.high};
     }
@@ -105,8 +105,9 @@ struct SphereList {
   std::size_t count = 0;
   float x[kAtATime], y[kAtATime], z[kAtATime], radius[kAtATime];
 
-  // Those of a body, from `first` on, that reach into the box, until there is no room; gives where it ended.
-  std::size_t fill(const PlacedBody& body, std::size_t first, const Box& box) {
+  // Adds a body's spheres that reach into the box, from `first` on, until the memory is full. Returns the sphere at
+  // which it stopped.
+  std::size_t fill(const PlacedBody& body, std::size_t first, const WorldBox& box) {
     count = 0;
     for (; first < body.sphere_count() && count < kAtATime; ++first) {
       const Sphere s = body.sphere(first);
@@ -135,7 +136,7 @@ struct SphereList {
   }
 };
 
-bool spheres_meet(const PlacedBody& a, const Box& box_a, const PlacedBody& b, const Box& box_b) {
+bool spheres_meet(const PlacedBody& a, const WorldBox& box_a, const PlacedBody& b, const WorldBox& box_b) {
   SphereList of_a, of_b;
   for (std::size_t i = 0; i < a.sphere_count();) {
     i = of_a.fill(a, i, box_b);
@@ -176,7 +177,7 @@ class Finder {
   void sort() {
     double sums[3] = {}, squares[3] = {};
     for (std::size_t i = 0; i < job_.body_count; ++i) {
-      const Box box = PlacedBody(job_.bodies[i]).box();
+      const WorldBox box = PlacedBody(job_.bodies[i]).box();
       boxes_[i] = {
           {box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z}, static_cast<std::uint32_t>(i)};
       for (std::size_t k = 0; k < 3; ++k) {
@@ -200,7 +201,7 @@ class Finder {
   }
 
   // With x, y and z in their places again.
-  Box box_in(const SweptBox& swept) const {
+  WorldBox box_in(const SweptBox& swept) const {
     SweptBox out = swept;
     std::swap(out.low[0], out.low[axis_]);
     std::swap(out.high[0], out.high[axis_]);

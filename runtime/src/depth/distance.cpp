@@ -20,7 +20,7 @@ double above(const Double3& p, const Corners& t) {
   return size > 0 ? std::abs(dot(normal, p - t.p[0])) / size : HUGE_VAL;
 }
 
-// Of two segments: closest points by alternating projection from the lines' own (Ericson, Real-Time Collision
+// Distance of two segments: closest points by alternating projection from the lines' own (Ericson, Real-Time Collision
 // Detection, 5.1.9).
 double between(const Double3& p, const Double3& p_end, const Double3& q, const Double3& q_end) {
   const Double3 d = p_end - p, e = q_end - q, r = p - q;

@@ -5,7 +5,7 @@
 
 namespace spherechain {
 
-// Of two triangles that do not cross: of all corners to the other triangle, and of all edges to the other's.
+// Distance of two triangles that do not cross: the least over all corners to the other triangle and all pairs of edges.
 double distance_of(const Corners& a, const Corners& b);
 
 }  // namespace spherechain

@@ -39,7 +39,7 @@ struct Height {
   double above;
 };
 
-// What of a part's skin is below.
+// The skin of a part that lies below the floor.
 class Below {
  public:
   Below(const Double3& up, double handedness) : up_(up), handedness_(handedness) {}

@@ -110,7 +110,7 @@ class Measurer {
            memory_.skins.b.is_covered(surface_b_.place_of_source[contact.triangle_b]);
   }
 
-  // Those parts alone that meet, where nothing else is looked at.
+  // Poses only the parts that are in contact, if nothing else is looked at.
   void pose_skins() {
     if (!in_.quick) {
       pose_all_skins();
@@ -140,7 +140,7 @@ class Measurer {
     }
   }
 
-  // Of a contact, part a's triangle first.
+  // The segment in which the triangles of a contact cross, with part a's triangle first.
   Segment3 segment_of(const TriangleContact& contact) const {
     const PosedSkin &skin_a = memory_.skins.a, &skin_b = memory_.skins.b;
     Segment3 out{};
@@ -255,7 +255,7 @@ class Measurer {
     exit = shortest_exit(sweep_, contour, settings, exit);
     Double3 axes[3];
     axes_of(contour, exit.direction, axes);
-    // What the quick measures alone call no fault is none: both forms must agree.
+    // A contact that the quick measures alone class as no fault stays no fault: both forms must agree.
     Penetration out = describe(parts, exit, look(parts, axes), is_likely ? nullptr : &quick);
     Double3 previous = previous_direction(parts, out);
     if (is_fault(out.kind) && normalize(previous)) {
@@ -425,7 +425,7 @@ class Measurer {
   double scale_of_a() const { return height_ / rest_height_; }
   double scale_of_b() const { return in_.are_one ? scale_of_a() : scale_of(*in_.b.asset, in_.b.pose); }
 
-  // Of the thinner part, where they meet: at the deepest points, or as thick as its spheres there.
+  // Thickness of the thinner part at the contact: at the deepest points, or that of its spheres there.
   double thickness_of(const TwoParts& parts, const Double3& direction, const Vec3& deepest_a,
                       const Vec3& deepest_b) const {
     double radius_a = 0, radius_b = 0;  // mean of the spheres whose skin meets

@@ -31,7 +31,7 @@ bool is_aliased(const BodyPenetrationJob& job) {
                      range_of(Span<const Penetration>{job.previous, job.previous_count})});
 }
 
-// What jobs have in common; `words`: of scratch memory that is needed.
+// Checks the fields that all jobs share. `words` becomes the scratch memory that the job needs.
 template <typename Job>
 Status check_rest(const Job& job, std::size_t words, Target& resolved) {
   const Status statuses[] = {check_list(job.contacts, job.contact_count, SC_FIELD_CONTACTS),

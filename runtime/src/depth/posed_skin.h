@@ -58,7 +58,7 @@ struct PosedSkin {
   }
 };
 
-// Whose skins meet: one body's with itself, or two bodies'. Places and vertices are those of the body's own surface.
+// The two skins of a contact: one body's own, or two bodies'. Places and vertices are those of the body's own surface.
 struct Skins {
   const PosedSkin &a, &b;
 

@@ -20,8 +20,8 @@ struct View {
   Double3 back(const Double3& p) const { return origin + (p.x * u + (p.y * v + p.z * d)); }
 };
 
-// What two triangles in view have in common, seen along d: a convex polygon. `rise` is how far b must move along d to
-// meet a there.
+// The common part of two triangles seen along d: a convex polygon. `rise` is how far b must move along d to meet a
+// there.
 struct Shadow {
   static constexpr int kCornersMax = 12;
   struct Corner {

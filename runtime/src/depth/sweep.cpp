@@ -237,7 +237,7 @@ bool Sweep::find(const Double3& direction, const Contour& contour, double bound,
   bool is_longer = true;
   for (int i = 0; is_longer && i < kPassesMax && depth < bound; ++i) {
     const double before = depth;
-    // What blocked last is likely to block again: it comes first.
+    // The pair that blocked last is likely to block again, so it comes first.
     for_pairs(
         first_block_, [&](double low, double high) { return high > depth && low <= depth + gap_; },
         [&](std::uint32_t a, std::uint32_t b, std::size_t at) {

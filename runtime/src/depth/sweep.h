@@ -39,21 +39,22 @@ class Sweep {
   // Once, before anything else.
   void clear();
 
-  // `origin`: about where they meet. keep_near() or keep_on_way() comes next.
+  // Sets the triangles of both sides. `origin` is a point near the contact. Call keep_near() or keep_on_way() next.
   void set_sides(Span<const TriangleRun> a, Span<const TriangleRun> b, const Double3& origin);
-  // Leaves the triangles that may meet within a move of `depth` in any direction: ways that are longer are not known
-  // from here on. With an infinite depth all are left.
+  // Keeps the triangles that may meet when b moves by up to `depth` in any direction. Later searches are exact only for
+  // ways up to `depth`. An infinite depth keeps all triangles.
   void keep_near(double depth);
-  // Likewise, of moves in that direction alone.
+  // Keeps the triangles that may meet when b moves by up to `depth` along `direction`.
   void keep_on_way(const Double3& direction, double depth);
 
-  // What the contour's own triangles block of the way: it is at least so long. Ends at `bound`.
+  // Lower bound of the way out: the distance that the contour's own triangles block. The search ends at `bound`.
   double find_by_contour(const Double3& direction, const Contour& contour, double bound, WayOut& out);
-  // False where the way is not shorter than `bound`: then `out` is the pair that said so.
+  // Returns false if the way out is not shorter than `bound`: `out` then holds the pair that blocks it.
   bool find(const Double3& direction, const Contour& contour, double bound, WayOut& out);
-  // Is b, moved so, inside a, or a inside b? `outwards`: -1 where the skins are inside out.
+  // True if one body lies inside the other after b has moved along `way`. `outwards` is -1 if the skins are inside out.
   bool is_enclosed(const Double3& direction, const WayOut& way, const Contour& contour, double outwards);
-  // Of b inside a, seen along the direction of a way that long; or of the outer layers of both alone.
+  // Volume of b inside a, seen along the direction of a way of length `depth`; or only that of the outer layers of
+  // both.
   Volume volume(const Double3& direction, double depth, bool of_outer_layers);
 
  private:
@@ -98,11 +99,12 @@ class Sweep {
   void look_along(const Double3& direction);
   // Boxes of all blocks that can block a way longer than `depth`.
   void see_boxes(double depth);
-  struct Room {
-    Double3 up, down;  // along each axis
+  // The farthest that b may move up and down along each axis.
+  struct Reach {
+    Double3 up, down;
   };
-  void keep(const Room& room);
-  void keep_runs(const Side& side, const Side& other, const Room& room, Boxes& out);
+  void keep(const Reach& reach);
+  void keep_runs(const Side& side, const Side& other, const Reach& reach, Boxes& out);
   void widen_blocks(const PosedSkin& skin, const TriangleRun& run, Boxes& out) const;
   bool may_block(std::uint32_t a, std::uint32_t b, double depth) const;
   void block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) const;

@@ -47,7 +47,7 @@ void Sweep::Boxes::view_blocks(const View& view) {
   }
 }
 
-// Those that reach into a box; what is not finite stays.
+// Keeps the blocks that reach into a box, and those that are not finite.
 void Sweep::Boxes::keep_blocks(const float (&least)[3], const float (&most)[3]) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < block_count; ++i) {
@@ -99,13 +99,13 @@ bool Sweep::Boxes::make_boxes(std::size_t i, const float* const (&seen)[3]) {
   return true;
 }
 
-void Sweep::keep(const Room& room) {
+void Sweep::keep(const Reach& reach) {
   for (std::size_t i = 0; i < vertices_.count; ++i) {
     vertices_.place[vertices_.vertex[i]] = kNoPlace;
   }
   vertices_.count = 0;
-  keep_runs(side_a(), side_b(), room, a_);
-  keep_runs(side_b(), side_a(), {room.down, room.up}, b_);
+  keep_runs(side_a(), side_b(), reach, a_);
+  keep_runs(side_b(), side_a(), {reach.down, reach.up}, b_);
   list_vertices(side_a(), a_);
   list_vertices(side_b(), b_);
 }
@@ -128,9 +128,9 @@ void Sweep::widen_blocks(const PosedSkin& skin, const TriangleRun& run, Boxes& o
 }
 
 // Runs of whose cluster the box meets one of the other side's that goes so far up and down along each axis.
-void Sweep::keep_runs(const Side& side, const Side& other, const Room& room, Boxes& out) {
-  const double up[3] = {room.up.x + gap_, room.up.y + gap_, room.up.z + gap_};
-  const double down[3] = {room.down.x + gap_, room.down.y + gap_, room.down.z + gap_};
+void Sweep::keep_runs(const Side& side, const Side& other, const Reach& reach, Boxes& out) {
+  const double up[3] = {reach.up.x + gap_, reach.up.y + gap_, reach.up.z + gap_};
+  const double down[3] = {reach.down.x + gap_, reach.down.y + gap_, reach.down.z + gap_};
   double highest[3], lowest[3];  // of them all
   for (std::size_t axis = 0; axis < 3; ++axis) {
     highest[axis] = -HUGE_VAL;

@@ -6,7 +6,7 @@
 
 namespace spherechain {
 
-// What of a contour can be seen from far away.
+// The share of a contour that can be seen from far away.
 struct Seen {
   double share;   // of the contour's segments
   double length;  // of the contour; a segment counts less where one looks along one of its sides
@@ -16,9 +16,10 @@ class Visibility {
  public:
   explicit Visibility(const Skins& skins) : skins_(skins) {}
 
-  // Of samples of the contour's segments, from which does some ray leave the bodies without meeting them? Rays start
-  // `clearance` away from the skin, between the two surfaces. `axes` are three directions at right angles. A segment
-  // counts by the cosine between a ray and the normal of the side that it meets more flatly: the best free ray's.
+  // Samples the contour's segments and finds those from which some ray leaves the bodies without meeting them. Rays
+  // start `clearance` away from the skin, between the two surfaces. `axes` are three directions at right angles. A
+  // segment is weighted by its best free ray: the cosine between the ray and the normal of the side that it meets more
+  // flatly.
   Seen look(const Contour& contour, const Double3 (&axes)[3], double clearance);
 
  private:

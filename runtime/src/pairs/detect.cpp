@@ -73,7 +73,7 @@ Status check(const DetectJob& job, Target& resolved, Scene& scene) {
   return is_aliased ? refuse(SC_ALIASED, pairs.size > 0 ? SC_FIELD_PAIRS : SC_FIELD_BITS) : done();
 }
 
-// Those of the tile's columns.
+// The rest pairs in the tile's columns.
 Span<const RestPair> rest_pairs_of(const Scene& scene, const TilePlace& place) {
   const Span<const RestPair> all = scene.choice.rest_pairs;
   if (place.column_count == scene.spheres.size) {

@@ -6,7 +6,7 @@
 namespace spherechain {
 namespace {
 
-// What each function that writes asks first.
+// Checks the arguments of every function that writes to a filter.
 Status check_edit(const sc_asset* asset, const Filter* filter) {
   if (asset == nullptr || filter == nullptr) {
     return refuse(SC_NULL, asset == nullptr ? SC_FIELD_ASSET : SC_FIELD_FILTER);

@@ -44,8 +44,8 @@ inline std::uint64_t bits_at(const std::uint64_t* words, std::size_t size, std::
   return (words[word] >> shift) | ((next << 1) << (63 - shift));
 }
 
-// Of a table by sorted_bit, the bits of a's pairs with first to first + 63, as far as those are after a. `first` is
-// before n and less than 64 before a.
+// In a table indexed by sorted_bit, the bits of a's pairs with spheres first to first + 63, as far as those come after
+// a. `first` is before n and less than 64 before a.
 inline std::uint64_t sorted_row_bits(const std::uint64_t* words, std::size_t size, std::size_t a, std::size_t first,
                                      std::size_t n) {
   if (a + 1 == n) {

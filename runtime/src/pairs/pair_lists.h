@@ -34,7 +34,7 @@ constexpr std::size_t padded_strips(std::size_t sphere_count) {
   return (strips_of(sphere_count) + kStripGroup - 1) / kStripGroup * kStripGroup;
 }
 
-// Room for PairLists.
+// Memory for PairLists.
 struct PairListBuffers {
   std::uint16_t* wanted;
   ListedPair *strips, *rest_pairs;

@@ -24,7 +24,7 @@ struct alignas(64) SphereColumns {
   float x[kTileSize], y[kTileSize], z[kTileSize], power[kTileSize];
 };
 
-// What a sphere's |center|^2 + radius^2 adds to what a test by multiply-adds may be off: the proof is below.
+// Share of a sphere's |center|^2 + radius^2 in the error bound of a test by multiply-adds: the proof is below.
 constexpr float kMarginOfExtent = 0x1p-18F, kMinMargin = 0x1p-120F;
 
 // The spheres of a whole vector. Returns what their extents raise the lanes of `extent` to.

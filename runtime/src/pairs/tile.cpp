@@ -18,7 +18,8 @@ namespace HWY_NAMESPACE {
 using Floats = hn::ScalableTag<float>;
 using Pairs = hn::ScalableTag<std::int32_t>;  // numbers below 2^31: offsets are of kTileSize spheres
 
-// Adds those of kListLanes pairs that touch and whose number is below `count`.
+// Tests kListLanes pairs at once and adds those that touch to `found`. Entries from `count` on are padding and ignored.
+// Compress() keeps the pairs' order. When `found` is full, its output takes the pairs over.
 HWY_INLINE void test_pairs(const Tile& tile, const ListedPair* pairs, hn::Vec<Floats> rest_scales, std::size_t count,
                            FoundPairs& found) {
   constexpr Floats kFloats;
@@ -38,7 +39,8 @@ HWY_INLINE void test_pairs(const Tile& tile, const ListedPair* pairs, hn::Vec<Fl
   }
 }
 
-// The bits of the strips that have wanted candidates, of a group; the others' are taken from `candidates`.
+// Removes unwanted pairs from the candidates of a group of strips. Returns one bit per strip, set if any candidate
+// remains: strips without one are skipped.
 HWY_INLINE std::uint64_t keep_wanted(const std::uint16_t* wanted, std::uint16_t* candidates) {
   const hn::ScalableTag<std::uint16_t> kStrips;
   constexpr std::size_t kLanes = hn::MaxLanes(kStrips);
@@ -60,7 +62,8 @@ HWY_INLINE void clear_group(std::uint16_t* candidates) {
   }
 }
 
-// The pairs of a strip whose bits are in `wanted`. Returns how many; writes kBlock entries.
+// Lists the pairs of a strip whose bits are set in `wanted`, in ascending order. Returns their count. May write up to
+// kBlock entries. Pairs hold byte offsets of spheres, so neighbouring columns differ by sizeof(Sphere).
 HWY_INLINE std::size_t list_strip(const ListedPair& strip, std::uint16_t wanted, ListedPair* listed) {
 #if HWY_TARGET == HWY_AVX3  // one register: no loop, whose end would be guessed wrong
   constexpr Pairs kPairs;
@@ -81,7 +84,8 @@ HWY_INLINE std::size_t list_strip(const ListedPair& strip, std::uint16_t wanted,
 #endif
 }
 
-// Writes each strip's columns that may have a pair with the row, or all of them.
+// Marks the candidates: for each strip, the columns that may touch the row. If the spheres cannot be put into columns
+// (fill_all() fails), all columns are marked. Both are correct, since each candidate is tested by the exact formula.
 HWY_INLINE void find_candidates(const Tile& tile, std::uint16_t* candidates) {
   const TilePlace place = tile.place;
   const std::size_t strip_count = tile.lists->strip_count;
@@ -104,7 +108,7 @@ void find(const Tile& tile, FoundPairs& found) {
   const PairLists lists = *tile.lists;
   HWY_ALIGN std::uint16_t candidates[kMaxStrips + kStripGroup];
   find_candidates(tile, candidates);
-  // What candidates need of memory arrives meanwhile.
+  // Tests the rest pairs first, while the candidates' memory arrives.
   for (std::size_t i = 0; i < lists.rest_count; i += kListLanes) {
     test_pairs(tile, lists.rest_pairs + i, hn::LoadU(kFloats, lists.rest_scales + i), kListLanes, found);
   }

@@ -87,7 +87,7 @@ struct Tile {
 
 struct FoundPairs;
 
-// What a caller wants of the pairs that touch.
+// Collects the touching pairs: a list, a bit a pair, or their count alone.
 class PairOutput {
  public:
   PairOutput(Span<Pair> list, Span<std::uint64_t> bits) : list_(list), bits_(bits) {}

@@ -11,8 +11,8 @@
 namespace spherechain {
 namespace {
 
-// What two inverse bind matrices, or places of a joint, may differ by: engines store them in halves of a unit in the
-// last place, exporters in six digits; another rest pose differs by far more.
+// Largest accepted difference of two inverse bind matrices, or of two places of a joint: engines store them in halves
+// of a unit in the last place, exporters in six digits; another rest pose differs by far more.
 constexpr double kTolerance = 1e-3;
 
 // The greatest difference of two matrices: of the linear parts relative to the greatest figure, of the translations

@@ -8,7 +8,7 @@
 namespace spherechain {
 namespace {
 
-// Of `count` entries of `size` bytes.
+// Memory of `count` entries of `size` bytes.
 MemoryRange range_of(const float* first, std::size_t count, std::size_t stride, std::size_t size) {
   if (first == nullptr || count == 0) {
     return {};

@@ -61,7 +61,7 @@ Status check_skin_pose(const AssetView& asset, const Pose& pose);
 // on none. 1 without bones, and where only rounding differs.
 double scale_of(const AssetView& asset, const Pose& pose);
 
-// What is read of a checked pose.
+// The memory that is read of a checked pose.
 MemoryRange range_of_bones(const AssetView& asset, const Pose& pose);
 MemoryRange range_of_vertices(const AssetView& asset, const Pose& pose);
 MemoryRange range_of_morph_weights(const AssetView& asset, const Pose& pose);

@@ -22,7 +22,7 @@ struct RefitInputs {
 // SC_OK where the pose's bones refit this open asset.
 Status check_refit_bones(const AssetView& asset, const Pose& pose, Radius radius);
 
-// Of a checked pose. For further characters of one asset change `matrices`.
+// Inputs for a checked pose. For further characters of one asset change `matrices`.
 RefitInputs refit_inputs(const AssetView& asset, const Pose& pose, Radius radius);
 
 void refit_from_moments(const RefitInputs& inputs, Target resolved, Sphere* spheres);

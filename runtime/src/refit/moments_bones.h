@@ -29,7 +29,7 @@ struct Moved {
   HWY_ALIGN float rows[kMomentSize];
 };
 
-// Of four floats, as they fall on lane i of a part: row[i % 4], and row[i / 4].
+// Repeats four floats over the lanes of a part: lane i holds row[i % 4], or row[i / 4].
 HWY_INLINE Vector repeat(const float* row, std::size_t part) {
   const Lanes16 d;
 #if HWY_TARGET == HWY_SCALAR

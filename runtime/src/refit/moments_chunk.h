@@ -19,7 +19,7 @@ namespace moments {
 constexpr std::size_t kChunk = 4;  // spheres finished together
 constexpr std::size_t kSums = 32;  // spheres whose sums are kept: finished at once, none waits for its own sums
 
-// Of spheres each: the centre's three rows of four columns, and the sixteen of its squared spread.
+// Sums for each of kSums spheres: the centre's three rows of four columns, and the sixteen of its squared spread.
 struct Sums {
   HWY_ALIGN float centers[kSums][kMomentSize];
   HWY_ALIGN float squares[kSums][kMomentSize];

@@ -58,7 +58,7 @@ HWY_INLINE Register<TI, NI> TableLookupBytes(Register<T, N> table, Register<TI, 
   return {wasm_i8x16_swizzle(table.raw, places.raw)};
 }
 
-// Of registers of four lanes; the places as bytes.
+// Looks up lanes in registers of four lanes; the places are given as bytes.
 template <class D, typename TI>
 HWY_INLINE v128_t IndicesFromVec(D, Register<TI, 4> places) {
   const v128_t spread = wasm_i8x16_shuffle(places.raw, places.raw, 0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12);

@@ -125,7 +125,7 @@ bool machine_has([[maybe_unused]] Target target) {
       return true;
   }
 #elif HWY_ARCH_X86
-  // Other compilers: what the build was told to assume.
+  // Other compilers: the instruction set that the build assumes.
   return target == SC_TARGET_SCALAR || count_lanes_kernels[index_of(target)] == &HWY_STATIC_DISPATCH(count_lanes);
 #else
   return true;  // NEON and WebAssembly's are compiled only where the build may assume them

@@ -20,7 +20,7 @@ bool find_target(const char* name, Target& target) noexcept;
 // Floats a vector register of that target holds: 1, 4, 8 or 16; 0 where it is not supported.
 std::size_t lanes_of(Target target) noexcept;
 
-// What a job's `target` stands for on this machine. False where it cannot be had; `resolved` is then not written.
+// Resolves a job's `target` on this machine. If it is not available, returns false and leaves `resolved` unwritten.
 bool resolve_target(Target wanted, Target& resolved) noexcept;
 
 // The forms of `kernel`, by the number of the target, for those this build has: of constant size, since which are

@@ -23,8 +23,8 @@ namespace HWY_NAMESPACE {
 constexpr std::size_t kBlock = kMaxClusterTriangles;  // a bit each
 static_assert(kBlock == 64);
 
-// Of each vertex of the cluster, the sides of the box that it is beyond of: a bit a side. At least 16 codes, and a
-// vector more than there are vertices, can be written and read.
+// One code for each vertex of the cluster: a bit for each side of the box that the vertex lies beyond. At least 16
+// codes, and a vector more than there are vertices, can be written and read.
 using Codes = std::uint8_t[256 + 64];
 
 HWY_INLINE void find_sides(const ContactScene& scene, std::size_t cluster_index, const BoxProbe& box, Codes& codes) {
@@ -46,7 +46,7 @@ HWY_INLINE void find_sides(const ContactScene& scene, std::size_t cluster_index,
 
 #if HWY_TARGET == HWY_SCALAR
 
-// Of the triangles of these corners, at most kBlock, those not all beyond one side.
+// A bit for each of the triangles with these corners, at most kBlock, that does not lie entirely beyond one side.
 HWY_INLINE std::uint64_t within(const std::uint8_t* corners, std::size_t count, std::size_t, const Codes& codes) {
   std::uint64_t bits = 0;
   for (std::size_t i = 0; i < count; ++i) {

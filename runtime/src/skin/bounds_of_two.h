@@ -35,7 +35,7 @@ inline HWY_NOINLINE void bound_by_bones(const ContactScene& scene) {
   }
 }
 
-// What all spheres' boxes have in common with that box, in a box.
+// Intersects each sphere's box with `room` and returns the box around these intersections.
 inline HWY_NOINLINE Box narrow(const ContactScene& scene, const Box& room) {
   Box out = kEmptyBox;
   for (std::size_t s = 0; s < scene.sphere_count; ++s) {

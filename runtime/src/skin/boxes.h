@@ -48,7 +48,7 @@ HWY_INLINE bool is_within(const Box& box, float share) {
   return most <= FLT_MAX && extent <= share * most && box.low[0] <= box.high[0];
 }
 
-// Of BoxColumns, or of whatever has `low` and `high` by axis.
+// Takes BoxColumns, or any type with `low` and `high` by axis.
 template <class Columns>
 HWY_INLINE Box box_at(const Columns& columns, std::size_t i) {
   Box box;

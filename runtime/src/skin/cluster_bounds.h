@@ -61,7 +61,7 @@ HWY_INLINE GroupEntries entries_of_group(const ContactScene& scene, std::size_t 
   return {terms[0], terms[1], morphs[0], morphs[1]};
 }
 
-// What a group's clusters are at rest, morphed.
+// Bounds of a group's clusters in the morphed rest pose.
 struct GroupRest {
   HWY_INLINE GroupRest() {}  // for the target: an implicit one is compiled for the build's own, which NEON refuses
   GroupVector center[3], half[3], radius;
@@ -212,7 +212,7 @@ HWY_INLINE void bound_lanes(const ContactScene& scene, std::size_t group, const 
     }
     half = hn::Min(hn::Add(half, margin), radius);
     const GroupVector low = hn::Sub(center[i], half), high = hn::Add(center[i], half);
-    // What is not a number, after an overflow, bounds nothing: a NaN would be lost on the way to the sphere's box.
+    // A NaN after an overflow becomes an infinite bound: otherwise it would be lost on the way to the sphere's box.
     hn::StoreU(hn::IfThenElse(hn::Eq(low, low), low, hn::Neg(hn::Inf(d))), d, scene.clusters.low[i] + first);
     hn::StoreU(hn::IfThenElse(hn::Eq(high, high), high, hn::Inf(d)), d, scene.clusters.high[i] + first);
     hn::StoreU(center[i], d, scene.ball_columns[i] + first);

@@ -80,7 +80,7 @@ class ContactCollector {
   ContactCollector(const Surface& surface, const PartTable& parts, const ContactLists& lists)
       : ContactCollector({&surface, nullptr}, {&surface, nullptr}, true, parts, lists) {}
   // Two bodies'.
-  ContactCollector(const Skin& a, const Skin& b, const PartTable& parts, const ContactLists& lists)
+  ContactCollector(const FilteredSkin& a, const FilteredSkin& b, const PartTable& parts, const ContactLists& lists)
       : ContactCollector(a, b, false, parts, lists) {}
 
   void begin_spheres(Pair spheres);
@@ -89,7 +89,8 @@ class ContactCollector {
   Status finish(ContactCounts& counts);
 
  private:
-  ContactCollector(const Skin& a, const Skin& b, bool are_one, const PartTable& parts, const ContactLists& lists)
+  ContactCollector(const FilteredSkin& a, const FilteredSkin& b, bool are_one, const PartTable& parts,
+                   const ContactLists& lists)
       : a_(a),
         b_(b),
         are_one_(are_one),
@@ -106,7 +107,7 @@ class ContactCollector {
   void add_parts(const TriangleContact& contact, const Candidate& candidate);
   std::size_t list_parts() const;
 
-  Skin a_, b_;
+  FilteredSkin a_, b_;
   bool are_one_;
   PartTable part_table_;
   Span<PartContact> parts_;

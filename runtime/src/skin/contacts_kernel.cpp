@@ -23,10 +23,11 @@ HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
-// Of triangles of a register of one block and a register of another, by their places there.
+// Pairs of triangles, one from a register of each block. Each entry is the triangle's place in its register.
 using PlacePairs = PairList<kLanes * kLanes>;
 
-// Lane k: triangle j + k of `other` has a corner where one of `block` has one at rest.
+// Sets lane k if triangle j + k of `other` shares a corner's rest position with triangle `one` of `block`. Corners at
+// the same rest position have the same weld number, so nine comparisons of numbers decide it.
 HWY_INLINE hn::Mask<Floats> sharing(const Block& block, std::size_t one, const Block& other, std::size_t j) {
   constexpr Floats kFloats;
   constexpr hn::Rebind<std::uint32_t, Floats> kWelds;
@@ -39,15 +40,17 @@ HWY_INLINE hn::Mask<Floats> sharing(const Block& block, std::size_t one, const B
   return hn::RebindMask(kFloats, hn::Or(hn::Or(holding(0), holding(1)), holding(2)));
 }
 
-// Two clusters' triangles, loaded.
+// The loaded triangles of two clusters.
 struct BlockPair {
   const Block &a, &b;
   bool share_corners;  // may triangles of the two have a corner at the same position at rest?
   bool are_one;        // the same cluster of the same body
 };
 
-// The triangles of two registers of the blocks whose boxes touch; of one cluster each two once. Of neighbours most that
-// lies side by side shares a corner, which the collector would tell too, one by one.
+// Lists the pairs of triangles, kLanes of each block from i and j on, whose boxes touch. Triangles whose boxes do not
+// touch cannot intersect, so no contact is lost. Triangles that share a corner at rest are neighbours and never count:
+// they are dropped here, because the collector would reject them one by one. Within one cluster a pair is listed only
+// if the second triangle's number is larger, so each pair comes once.
 HWY_INLINE void find_places(const BlockPair& blocks, std::size_t i, std::size_t j, PlacePairs& out) {
   constexpr Floats kFloats;
   constexpr hn::Rebind<std::uint32_t, Floats> kTriangles;
@@ -71,7 +74,9 @@ HWY_INLINE void find_places(const BlockPair& blocks, std::size_t i, std::size_t 
   out.finish();
 }
 
-// This and what calls it return true at the first contact, where that is all that is asked for.
+// Tests the listed pairs of two registers, kLanes at a time. Single precision drops the pairs that are certainly apart
+// and marks those that certainly intersect; the collector decides the rest exactly, so the result does not depend on
+// the width of the registers. With first_only, this function and its callers return true at the first contact.
 HWY_NOINLINE bool pair_registers(const BlockPair& blocks, std::size_t i, std::size_t j, bool first_only,
                                  ContactCollector& collector) {
   const Block &block = blocks.a, &other = blocks.b;
@@ -80,7 +85,8 @@ HWY_NOINLINE bool pair_registers(const BlockPair& blocks, std::size_t i, std::si
   for (std::size_t k = 0; k < places.count; k += kLanes) {
     const std::size_t left = places.count - k;
     std::uint64_t bits = ~std::uint64_t{0} >> (64 - (left < kLanes ? left : kLanes));
-    const Verdicts verdicts = judge(Taken(block, i, places.a + k), Taken(other, j, places.b + k), bits);
+    const Verdicts verdicts =
+        classify(GatheredTriangles(block, i, places.a + k), GatheredTriangles(other, j, places.b + k), bits);
     for (bits &= ~verdicts.apart; bits != 0; bits &= bits - 1) {
       const std::size_t lane = lowest_bit(bits);
       const std::size_t one = i + static_cast<std::size_t>(places.a[k + lane]);
@@ -100,6 +106,8 @@ HWY_NOINLINE bool pair_registers(const BlockPair& blocks, std::size_t i, std::si
   return false;
 }
 
+// Tests all registers of one block against all of the other. Numbers ascend within a block: in one cluster, a register
+// whose last number is not above the first of the other holds no later triangle and is skipped.
 HWY_INLINE bool pair_triangles(const BlockPair& blocks, bool first_only, ContactCollector& collector) {
   const Block &block = blocks.a, &other = blocks.b;
   for (std::size_t i = 0; i < block.count; i += kLanes) {
@@ -116,7 +124,8 @@ HWY_INLINE bool pair_triangles(const BlockPair& blocks, bool first_only, Contact
   return false;
 }
 
-// Two clusters that are loaded; or one, with itself.
+// Loads and tests two clusters, or one with itself. Only triangles of a that reach into b's box are loaded, then only
+// those of b that reach into the box around them; triangles outside these boxes cannot intersect.
 HWY_NOINLINE bool pair_clusters(const Bodies& bodies, std::size_t a, std::size_t b, ContactCollector& collector) {
   Block block, other;
   return load_block(bodies.a, a, BoxProbe(box_of_span(bodies.b, b)), block) &&
@@ -124,7 +133,7 @@ HWY_NOINLINE bool pair_clusters(const Bodies& bodies, std::size_t a, std::size_t
          pair_triangles({block, other, bodies.a.neighbours, bodies.are_one && a == b}, bodies.a.first_only, collector);
 }
 
-// Of clusters, waiting to be decided together.
+// Pairs of clusters that wait to be tested together.
 struct ClusterPairs : PairList<512> {
   Pair spheres{~0U, ~0U};  // whose clusters were paired last
   bool touch = false;      // do they?
@@ -243,7 +252,7 @@ HWY_INLINE std::uint64_t paired(const Bodies& bodies, std::size_t first, std::si
   return bits & (~std::uint64_t{0} >> (64 - (count < 64 ? count : 64)));
 }
 
-// Of b and a, waiting for their clusters to be paired.
+// Pairs of spheres (b and a) that wait for their clusters to be paired.
 using SpherePairs = PairList<512>;
 
 HWY_NOINLINE void pair_spheres(const Bodies& bodies, SpherePairs& spheres, ClusterPairs& clusters,

@@ -27,7 +27,7 @@ class Looker {
   explicit Looker(const Surface& surface) : surface_(surface) {
     Double3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     for (std::size_t c = 0; c < surface.clusters.size; ++c) {
-      const Box box = box_of(c);
+      const ClusterBox box = box_of(c);
       for (double Double3::*axis : {&Double3::x, &Double3::y, &Double3::z}) {
         low.*axis = std::min(low.*axis, box.low.*axis);
         high.*axis = std::max(high.*axis, box.high.*axis);
@@ -63,11 +63,11 @@ class Looker {
   }
 
  private:
-  struct Box {
+  struct ClusterBox {
     Double3 low, high;
   };
 
-  Box box_of(std::size_t cluster) const {
+  ClusterBox box_of(std::size_t cluster) const {
     const BoxLanes& lanes = surface_.boxes[cluster / kClusterLanes];
     const std::size_t i = cluster % kClusterLanes;
     const Double3 center{double{lanes.x[i]}, double{lanes.y[i]}, double{lanes.z[i]}};
@@ -85,7 +85,7 @@ class Looker {
              {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL},
              piece_of(surface_.clusters[first].first_triangle)};
     for (std::size_t c = first; c < std::min(end, surface_.clusters.size); ++c) {
-      const Box box = box_of(c);
+      const ClusterBox box = box_of(c);
       const double low[3] = {box.low.x, box.low.y, box.low.z}, high[3] = {box.high.x, box.high.y, box.high.z};
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double wider = double{kWider} * (std::abs(low[axis]) + std::abs(high[axis]));
@@ -149,7 +149,7 @@ class Looker {
     return surface_.pieces[surface_.triangle_vertices[3 * triangle]];
   }
 
-  // Of another piece than the look's own. (Moeller and Trumbore)
+  // True if the ray meets a triangle of another piece than the look's own (Moeller and Trumbore).
   bool hits(std::size_t triangle, const Double3& from, const Double3& direction) const {
     if (piece_of(triangle) == own_) {
       return false;

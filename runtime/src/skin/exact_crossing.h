@@ -10,7 +10,7 @@
 
 namespace spherechain {
 
-// Of both, along an axis.
+// Extent of both triangles together along an axis.
 inline double extent_of(const TriangleCorners& a, const TriangleCorners& b, float Vec3::*axis) {
   float low = a.p[0].*axis, high = low;
   for (int i = 0; i < 3; ++i) {
@@ -45,7 +45,7 @@ inline Double3 normal_of(const TriangleCorners& t) {
   return cross(difference(t.p[1], t.p[0]), difference(t.p[2], t.p[0]));
 }
 
-// What the filter tells; sides it cannot tell are 0.
+// Sides by the floating-point filter; a side that it cannot decide becomes 0.
 inline void measure(const TriangleCorners& plane, const TriangleCorners& t, double error, Crossing& out) {
   const Double3 normal = normal_of(plane);
   for (int i = 0; i < 3; ++i) {

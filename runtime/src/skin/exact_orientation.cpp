@@ -47,7 +47,7 @@ class ExactSum {
  private:
   static bool is_zero(double x) { return !(x < 0) && !(x > 0); }
 
-  // What x + y is more than its rounding, which becomes x (Knuth).
+  // Replaces x by the rounded sum x + y and returns the rounding error (Knuth).
   static double two_sum(double& x, double y) {
     const double sum = x + y;
     const double y_rounded = sum - x;

@@ -17,12 +17,12 @@ struct Vec2 {
 // 1 where a, b, c go round against the clock, -1 with it, 0 where they are on one line.
 int side_of_line(const Vec2& a, const Vec2& b, const Vec2& c) noexcept;
 
-// What a determinant of three differences of points may be off, computed in double precision in any order, without or
+// Error bound of a determinant of three differences of points, computed in double precision in any order, without or
 // with fused multiply-adds. With u = 2^-53: each of its six products of one x, one y and one z has three differences
-// rounded (3), two multiplications (2) and takes part in at most three additions (3), so the error is below
-// ((1 + u)^8 - 1) times the sum of the products' magnitudes. That is at most 6 ex ey ez where no difference is larger
-// than those extents: 48.1 u ex ey ez, of which we allow 64 u: room for the extents' own rounding and that of this
-// product. Nothing underflows (exact_orientation.cpp).
+// rounded (3), two multiplications (2) and takes part in at most three additions (3), so the error is below ((1 + u)^8
+// - 1) times the sum of the products' magnitudes. That is at most 6 ex ey ez where no difference is larger than those
+// extents: 48.1 u ex ey ez, of which we allow 64 u: room for the extents' own rounding and that of this product.
+// Nothing underflows (exact_orientation.cpp).
 constexpr double determinant_error(double extent_x, double extent_y, double extent_z) {
   return 0x1p-47 * extent_x * extent_y * extent_z;
 }

@@ -36,7 +36,7 @@ bool has_separating_edge(const FlatTriangle& a, const FlatTriangle& b) {
   return false;
 }
 
-// Of triangles in one plane, or of which one is degenerate: that one is a line along every axis.
+// True if two triangles in one plane intersect, or two of which one is degenerate: that one is a line along every axis.
 bool flat_triangles_intersect(const TriangleCorners& a, const TriangleCorners& b) {
   for (int axis = 0; axis < 3; ++axis) {
     FlatTriangle flat_a, flat_b;

@@ -24,8 +24,8 @@ struct Segment {
   Vec3 from, to;
 };
 
-// What two triangles that intersect have in common; of triangles in one plane the longest piece of an edge that lies in
-// the other triangle.
+// The segment in which two intersecting triangles cross. If they lie in one plane: the longest piece of an edge that
+// lies in the other triangle.
 Segment crossing_segment(const TriangleCorners& a, const TriangleCorners& b) noexcept;
 
 }  // namespace spherechain

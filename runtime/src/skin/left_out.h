@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pairs of triangles that are no contacts, whatever they do.
+// Triangle pairs that never count as contacts: neighbours on the skin, pairs that intersect at rest, and parts that the
+// caller ignores.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +10,10 @@
 
 namespace spherechain {
 
-// A body's triangles; a bit for each part that meets nothing, or null.
-struct Skin {
+// The skin of one body, with the parts that its caller excludes from every contact.
+struct FilteredSkin {
   const Surface* surface;
-  const std::uint64_t* ignored_parts;
+  const std::uint64_t* ignored_parts;  // one bit per body part; null: none is ignored
 
   bool ignores(std::size_t triangle) const {
     const std::size_t part = surface->parts[triangle];
@@ -20,12 +21,13 @@ struct Skin {
   }
 };
 
-// By places: of a cluster, and of a triangle in Surface::triangles.
+// Locates a triangle in the baked tables, not in the source's numbering: indices into Surface::clusters and
+// Surface::triangles.
 struct PlacedTriangle {
   std::size_t cluster, triangle;
 };
 
-// Have two triangles of one body a corner each at the same position at rest?
+// True if two triangles of one body share a corner position in the rest pose, which makes them neighbours.
 inline bool share_a_position(const Surface& surface, const PlacedTriangle& a, const PlacedTriangle& b) {
   const auto weld = [&](const PlacedTriangle& of, std::size_t corner) {
     const std::size_t place = surface.corners[3 * of.triangle + corner];
@@ -42,7 +44,7 @@ inline bool share_a_position(const Surface& surface, const PlacedTriangle& a, co
   return false;
 }
 
-// Do two triangles of one body intersect at rest? By the source's numbers, the lower one first.
+// True if two triangles of one body intersect in the rest pose. Pass the source's numbers, the lower one first.
 inline bool intersect_at_rest(const Surface& surface, const Pair& triangles) {
   return std::binary_search(surface.rest_contacts.begin(), surface.rest_contacts.end(), triangles);
 }

@@ -18,7 +18,7 @@ inline constexpr std::size_t kContactPadding = 16;
 // + x, x - y, y - z and z - x. Most clusters whose boxes touch are apart along a diagonal. And room for a vector.
 inline constexpr std::size_t kDirections = 9, kSpanLanes = 16;
 
-// Of a bone's matrix by columns of four.
+// Floats of a bone's matrix, stored by columns of four.
 inline constexpr std::size_t kColumnFloats = 16;
 
 // How large a bone's matrix is.
@@ -58,8 +58,8 @@ struct ContactScene {
   float* ball_columns[4] = {};               // around the clusters, by coordinates, the radius last
   std::uint8_t* is_group_bounded = nullptr;  // a group's of eight clusters
   BoneSize* bone_sizes = nullptr;
-  // Of one of two bodies that bones move: a bone's box in the pose, its low corner and its high one. Null: spheres are
-  // bounded wherever they are.
+  // The bones' boxes in the pose, low corner first, where bones move both of two bodies. If null, spheres are bounded
+  // wherever they are.
   float* bone_boxes = nullptr;
   // With hulls.
   float* columns = nullptr;       // of bone after bone four of four floats, the fourth the translation
@@ -67,7 +67,7 @@ struct ContactScene {
   float* hull_margins = nullptr;  // how far from the points' hull the sphere's vertices are at most
 };
 
-// Whose spheres are paired: a body's with its own, or with another's.
+// The bodies whose spheres are paired: one body with itself, or two bodies.
 struct Bodies {
   const ContactScene &a, &b;
   bool are_one;

@@ -64,7 +64,7 @@ BoneSize bone_size(const BoneMatrices& bones, std::size_t bone) {
   return {std::sqrt(most), std::max({std::abs(t[0]), std::abs(t[bones.row]), std::abs(t[2 * bones.row])})};
 }
 
-// What bounds by bones read of the pose, beside its matrices.
+// Prepares bounds by bones: marks every group as not bounded, and stores each bone's size and its matrix by columns.
 void prepare_bounds(const AssetView& asset, ContactScene& scene) {
   const BoneMatrices& bones = scene.skin.bones;
   std::memset(scene.is_group_bounded, 0, asset.skin().bounds_term_counts.size);
@@ -139,7 +139,7 @@ Bounds3 bound_bones(const AssetView& asset, const Surface& surface, const Pose& 
   return all;
 }
 
-// Those that are not finite intersect nothing, and count for nothing.
+// Bounds the finite vertices. Other vertices intersect nothing and are skipped.
 Bounds3 bound_vertices(const Surface& surface, const Pose& pose) {
   Bounds3 all{{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
   const std::size_t stride = vertex_stride(pose);

@@ -19,7 +19,7 @@ struct TableOfParts {
   std::size_t count_b = 0;  // parts of body b
   std::size_t word_count = 0;
 
-  // Of one body a <= b, and only such two have a place.
+  // Place of the pair a, b. In one body only pairs with a <= b have a place.
   std::size_t place(std::size_t a, std::size_t b, bool are_one) const {
     return a * count_b + b - (are_one ? a * (a + 1) / 2 : 0);
   }
@@ -44,7 +44,7 @@ using PartTable = TableOfParts<PartContact>;
 
 // Is it open, with a skin?
 Status check_asset(const Asset* asset);
-// Whose skin a job asks about: is it there, does the pose fit, and was the table made of it?
+// Checks the skin of a job: it exists, the pose fits it, and the table was made from it.
 Status check_skin(const Asset* asset, const Pose& pose, const std::uint64_t* skin_table, Surface& surface);
 
 bool has_skin(const AssetView& asset);
@@ -52,32 +52,32 @@ bool has_skin(const AssetView& asset);
 struct Bounds3 {
   float low[3], high[3];
 };
-// What all of the skin stays in, in a checked pose of bones. `boxes`, or null: the same of what each bone moves, six
-// floats: the low corner, then the high one.
+// Bounds all of the skin in a checked pose of bones. `boxes`, if not null, receives the bounds of the skin that each
+// bone moves, in six floats: the low corner, then the high one.
 Bounds3 bound_bones(const AssetView& asset, const Surface& surface, const Pose& pose, float* boxes);
 Bounds3 bound_vertices(const Surface& surface, const Pose& pose);
-// Of two bodies that both are moved by bones: for their scenes.
+// Bounds the bones of two bodies, both moved by bones, in their scenes.
 void bound_bones_of_two(const AssetView& asset_a, ContactScene& a, const AssetView& asset_b, ContactScene& b,
                         const Pose& pose_a, const Pose& pose_b, WordMemory& memory);
 
-// What a job reads of a body.
+// The memory that a job reads of a body.
 struct BodyRanges {
   MemoryRange vertices, bones, morph_weights, skin_table, ignored_parts;
 
   explicit BodyRanges(const JobBody& body);
 };
 
-// Of one scene, and of one body's table of parts.
+// Scratch memory, in words, of one scene and one body's table of parts.
 std::size_t skin_scratch_words(const AssetView& asset);
-// Of two, and of their table of parts.
+// Scratch memory, in words, of two scenes and their table of parts.
 std::size_t body_scratch_words(const AssetView& a, const AssetView& b);
 
 // The scratch memory of a scene; and a pose for one that has it.
 void lay_out(const AssetView& asset, WordMemory& memory, ContactScene& scene);
 void set_pose(const AssetView& asset, const Surface& surface, const Pose& pose, const Filter* filter,
               ContactScene& scene);
-// Of a checked pose, with enough words; no cluster is bounded yet. All pairs of spheres are paired but those that the
-// asset or the filter, which may be null, ignores or disables.
+// Makes the scene of a checked pose; there must be enough words. No cluster is bounded yet. All pairs of spheres are
+// paired but those that the asset or the filter, which may be null, ignores or disables.
 ContactScene scene_of(const AssetView& asset, const Surface& surface, const Pose& pose, const Filter* filter,
                       WordMemory& memory);
 

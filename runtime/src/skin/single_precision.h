@@ -45,12 +45,12 @@ HWY_INLINE Vector plane_error(const Vector3& extent) {
 }
 
 // Some of a register of triangles of a block, in any order.
-struct Taken {
+struct GatheredTriangles {
   const Block* block;
   std::size_t first;  // of the register
   hn::Vec<hn::Rebind<std::int32_t, Floats> > which;
 
-  HWY_INLINE Taken(const Block& from, std::size_t begin, const std::int32_t* places)
+  HWY_INLINE GatheredTriangles(const Block& from, std::size_t begin, const std::int32_t* places)
       : block(&from), first(begin), which(hn::LoadU(hn::Rebind<std::int32_t, Floats>(), places)) {}
   HWY_INLINE Vector of(const float* column) const {
     constexpr Floats kFloats;
@@ -82,13 +82,13 @@ struct Sides {
     const Vector most = hn::Max(hn::Max(distances[0], distances[1]), distances[2]);
     return hn::Or(hn::Gt(least, error), hn::Lt(most, hn::Neg(error)));
   }
-  // None is on a side that is not certain.
+  // True in lanes where every corner's side is certain.
   HWY_INLINE LaneMask known(Vector error) const {
     return hn::And(hn::And(hn::Gt(hn::Abs(distances[0]), error), hn::Gt(hn::Abs(distances[1]), error)),
                    hn::Gt(hn::Abs(distances[2]), error));
   }
-  // Of known sides: turns the corners until the one that is alone on its side is the first. Returns where that is
-  // below.
+  // Turns the corners until the first is the one alone on its side. All sides must be known. Returns the lanes in which
+  // that corner is below.
   HWY_INLINE LaneMask put_alone_first(Vector3 (&corners)[3]) const {
     constexpr Floats kFloats;
     const Vector zero = hn::Zero(kFloats);
@@ -104,13 +104,15 @@ struct Sides {
   }
 };
 
-// What single precision can tell of pairs of triangles.
+// One bit a lane: `apart` if the two triangles certainly do not intersect, `meeting` if they certainly do. A lane with
+// neither bit needs the exact test.
 struct Verdicts {
   std::uint64_t apart, meeting;
 };
 
-// Each lane's two triangles, as exact_crossing.h does it. Lanes that are not wanted may be left open.
-HWY_INLINE Verdicts judge(const Taken& first, const Taken& second, std::uint64_t wanted) {
+// Classifies each lane's two triangles by the test of exact_crossing.h. A sign counts only if its value exceeds the
+// rounding error's bound. Lanes that are not wanted may stay undecided.
+HWY_INLINE Verdicts classify(const GatheredTriangles& first, const GatheredTriangles& second, std::uint64_t wanted) {
   Vector3 a[3] = {first.corner(0), first.corner(1), first.corner(2)};
   Vector3 b[3] = {second.corner(0), second.corner(1), second.corner(2)};
   Vector extents[3];

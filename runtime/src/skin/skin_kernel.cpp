@@ -12,7 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
-// Of the listed clusters, or of all where the list is null. Vertices go to their own place, or to their source vertex'.
+// Skins the listed clusters, or all if the list is null. Vertices go to their own place, or to their source vertex'.
 void skin_all(const SkinInputs& in, Span<const std::uint32_t> listed, bool by_source, float* positions,
               std::size_t stride) {
   const Surface& surface = *in.surface;

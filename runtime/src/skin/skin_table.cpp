@@ -16,8 +16,8 @@
 namespace spherechain {
 namespace {
 
-// What a table begins with. The bytes of another asset may have come to lie at the same address, hence its sizes. The
-// arrays start at cache lines: a table that was copied to another place in its line is none.
+// The header of a table. It holds the asset's sizes, because the bytes of another asset may lie at the same address.
+// The arrays start at cache lines, so a table copied to another place in its line is invalid.
 struct Header {
   std::uint64_t magic, asset, triangles, vertices, alignment;
 };
@@ -285,7 +285,7 @@ class Filler {
     }
   }
 
-  // What runs of one part and clusters have in common.
+  // Calls visit(part, run) for each run of consecutive triangles of one part within a cluster.
   template <typename Visit>
   void for_part_runs(const Visit& visit) const {
     for (std::uint32_t c = 0; c < out_.clusters.size; ++c) {
@@ -391,7 +391,7 @@ class Filler {
     }
   }
 
-  // Of runs of so many entries each, where they start, and the end.
+  // Start of each run, from the runs' counts of entries, and the end of the last.
   static void fill_starts(Span<const std::uint32_t> counts, Span<std::uint32_t> starts) {
     for (std::size_t i = 0; i < starts.size; ++i) {
       starts[i] = i == 0 ? 0 : starts[i - 1] + counts[i - 1];

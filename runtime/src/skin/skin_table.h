@@ -30,7 +30,7 @@ constexpr std::size_t slot_count(const Cluster& cluster) noexcept {
   return (cluster.vertex_count + kSlotLanes - 1) / kSlotLanes * kSlotLanes;
 }
 
-// What a morph target of weight 1 adds to the rest position in a slot.
+// The displacement of the rest position in a slot by a morph target of weight 1.
 struct SlotMorph {
   std::uint32_t target, slot;
   Vec3 delta;
@@ -85,7 +85,7 @@ struct Surface {
   Span<Pair> rest_contacts;                 // source triangles that intersect in the rest pose, sorted
   Span<BoneBox> bone_boxes;                 // a bone's
   Span<float> morph_reach;                  // how far a morph target of weight 1 moves a vertex at most
-  // Of the rest pose without morphs; empty where nothing moves the source.
+  // Hulls in the rest pose without morphs; empty where nothing moves the source.
   Span<Hull> hulls;          // a sphere's
   Span<float> hull_points;   // of a hull all x, all y, all z
   Span<float> hull_weights;  // of a hull its first bone's of all points, its second's ...

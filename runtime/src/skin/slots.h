@@ -91,7 +91,7 @@ struct Greater {
   }
 };
 
-// What is left of the lanes of each of four vectors.
+// Reduces the lanes of each of four vectors to one value.
 template <class Reduce>
 HWY_INLINE void reduce_four(const Vector* in, const Reduce& reduce, float* out) {
 #if HWY_TARGET == HWY_SCALAR

@@ -11,10 +11,10 @@ namespace {
 double least_of(double a, double b, double c) { return std::min(a, std::min(b, c)); }
 double greatest_of(double a, double b, double c) { return std::max(a, std::max(b, c)); }
 
-// What the corners of a and of b do to each other.
+// The moves of the corners of triangles a and b along one CornerPaths, relative to each other.
 class Pass {
  public:
-  explicit Pass(const Way& way) : way_(way) {
+  explicit Pass(const CornerPaths& way) : way_(way) {
     for (std::size_t k = 0; k < 6; ++k) {
       moves_[k] = way.to.p[k] - way.from.p[k];
     }
@@ -26,7 +26,7 @@ class Pass {
       }
     }
     const double least = way.step / std::sqrt(most);  // infinite where nothing moves
-    // Of what moves farther the fewer times are looked at, the farther it is.
+    // The farther the corners move, the longer the least step: this limits the number of times looked at.
     least_step_ = least >= way.shortest ? least : std::min(way.shortest * way.shortest / least, 256 * way.shortest);
   }
 
@@ -91,7 +91,7 @@ class Pass {
     return until;
   }
 
-  const Way& way_;
+  const CornerPaths& way_;
   Double3 moves_[6];
   double least_step_;
 };
@@ -106,7 +106,7 @@ bool is_finite(const SixCorners& corners) {
 
 }  // namespace
 
-SixCorners Way::at(double t) const {
+SixCorners CornerPaths::at(double t) const {
   if (t >= 1) {
     return to;
   }
@@ -117,7 +117,7 @@ SixCorners Way::at(double t) const {
   return out;
 }
 
-Approach approach(const Way& way, double limit) {
+Approach approach(const CornerPaths& way, double limit) {
   if (!is_finite(way.from) || !is_finite(way.to)) {
     return {Outcome::kApart, 1};
   }

@@ -17,7 +17,7 @@ struct SixCorners {
 };
 
 // From `from` to `to` all corners go straight, but for `stray`, of a corner of a and one of b together.
-struct Way {
+struct CornerPaths {
   SixCorners from, to;
   double stray;
   double step;      // of the corners' distances from each other: what they may change by between two looks
@@ -40,6 +40,6 @@ struct Approach {
 // closes is known. From a time on, the direction is taken whose gap stays open longest, of those that part the
 // triangles then; and again from when it closes. Where `stray` is more than a quarter of a step, and the gap is not
 // wider, kTooCoarse.
-Approach approach(const Way& way, double limit);
+Approach approach(const CornerPaths& way, double limit);
 
 }  // namespace spherechain

@@ -137,7 +137,7 @@ Status check_motion(const Motion& motion, Surface& surface) {
   if (motion.blend != SC_BLEND_LINEAR && motion.blend != SC_BLEND_SLERP && motion.blend != SC_BLEND_NLERP) {
     return refuse(SC_BAD_VALUE, SC_FIELD_BLEND);
   }
-  if (motion.joint_count > kMostJoints) {
+  if (motion.joint_count > kJointsMax) {
     return refuse(SC_BAD_VALUE, SC_FIELD_JOINTS);
   }
   const JobBody& body = motion.body;

@@ -13,10 +13,10 @@
 
 namespace spherechain {
 
-constexpr std::size_t kMostJoints = 65536;  // so that no size of memory overflows
+constexpr std::size_t kJointsMax = 65536;  // so that no size of memory overflows
 
-// Of a joint during the step, at most: the norm of its matrix' linear part, of that part's first two derivatives by
-// time, and of those of where its origin is.
+// Upper bounds for a joint during the step: the norm of its matrix' linear part, of that part's first two derivatives
+// by time, and of those of its origin.
 struct Speeds {
   double size, turn, turn_change, velocity, acceleration;
 };
@@ -34,7 +34,7 @@ struct Skeleton {
 class BodyMotion {
  public:
   void take(WordMemory& memory, const AssetView& asset, std::size_t joint_count);
-  // Of a checked motion.
+  // Starts at a motion that was checked.
   void start(const Motion& motion, const AssetView& asset, const Surface& surface);
 
   // How far a vertex of the sphere is at most, during the whole step, from where it would be if it went straight from

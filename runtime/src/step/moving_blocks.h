@@ -147,12 +147,12 @@ inline HWY_NOINLINE bool load_moving_block(const MovingScene& scene, std::size_t
 }
 
 // Some of a register of triangles of a block, in any order.
-struct MovingTaken {
+struct GatheredMovingTriangles {
   const MovingBlock* block;
   std::size_t first;  // of the register
   hn::Vec<hn::Rebind<std::int32_t, Floats> > which;
 
-  HWY_INLINE MovingTaken(const MovingBlock& from, std::size_t begin, const std::int32_t* places)
+  HWY_INLINE GatheredMovingTriangles(const MovingBlock& from, std::size_t begin, const std::int32_t* places)
       : block(&from), first(begin), which(hn::LoadU(hn::Rebind<std::int32_t, Floats>(), places)) {}
   HWY_INLINE Vector of(const float* column) const {
     constexpr Floats kFloats;
@@ -165,10 +165,11 @@ struct MovingTaken {
 
 // Each lane's two triangles: does a plane stay between them that keeps its direction, the normal of one of the two half
 // way, or the line between them? Roundings are less than 2^-20 of what `stray` counts in.
-HWY_INLINE std::uint64_t stay_apart(const MovingTaken& first, const MovingTaken& second, float stray) {
+HWY_INLINE std::uint64_t stay_apart(const GatheredMovingTriangles& first, const GatheredMovingTriangles& second,
+                                    float stray) {
   constexpr Floats kFloats;
   const Vector3 origin = first.corner(0, 0);
-  const auto corner = [&](const MovingTaken& of, std::size_t pose, std::size_t k)
+  const auto corner = [&](const GatheredMovingTriangles& of, std::size_t pose, std::size_t k)
                           HWY_ATTR { return subtract(of.corner(pose, k), origin); };
   const Vector3 a[2][3] = {{corner(first, 0, 0), corner(first, 0, 1), corner(first, 0, 2)},
                            {corner(first, 1, 0), corner(first, 1, 1), corner(first, 1, 2)}};

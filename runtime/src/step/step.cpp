@@ -20,7 +20,7 @@ constexpr float kTolerance = 1e-4F;
 constexpr double kWidest = 1.0 / 1024;          // what vertices may stray in a piece, in heights
 constexpr double kFarthest = 1.0 / 4;           // what they may move against each other in a piece, in heights
 constexpr double kTooFar = 16;                  // heights: cut by this, a step would have too many pieces
-constexpr int kMostHalvings = 9;                // of the step, into pieces
+constexpr int kHalvingsMax = 9;                 // of the step, into pieces
 constexpr std::size_t kClusterPairs = 1 << 14;  // listed at a time
 
 // A body, on its way through the pieces.
@@ -73,7 +73,7 @@ struct Walker {
   MovingScene moving() const { return {start, end, strays, spheres, clusters, is_swept}; }
 };
 
-struct Room {
+struct StepMemory {
   Walker a, b;
   StepTable table;
   PartTable parts;
@@ -98,7 +98,7 @@ struct Room {
   }
 };
 
-// What a job reads of a motion.
+// The memory that a job reads of a motion.
 struct MotionRanges {
   BodyRanges body;
   MemoryRange end_vertices, end_bones, end_weights, start_joints, end_joints, parents, joint_of_bone;
@@ -136,7 +136,7 @@ bool is_aliased(const StepJob& job) {
   return shared;
 }
 
-Status check(const StepJob& job, Target& resolved, Room& room) {
+Status check(const StepJob& job, Target& resolved, StepMemory& room) {
   Status status = check_motion(job.a, room.a.surface);
   if (status == SC_OK && has_two(job)) {
     status = check_motion(job.b, room.b.surface);
@@ -172,7 +172,7 @@ Status check(const StepJob& job, Target& resolved, Room& room) {
 // One run of a checked job.
 class Step {
  public:
-  Step(const StepJob& job, Target resolved, Room& room)
+  Step(const StepJob& job, Target resolved, StepMemory& room)
       : job_(job), resolved_(resolved), room_(room), are_one_(!has_two(job)), b_(are_one_ ? room.a : room.b) {}
 
   // Refuses steps that are too wild for a certain answer; only scratch memory is written.
@@ -183,7 +183,7 @@ class Step {
     }
     const double height{room_.a.asset->info().height};
     for (const Walker* walker : {&room_.a, &b_}) {
-      if (!(walker->widest() <= kWidest * height * (1 << 2 * kMostHalvings))) {
+      if (!(walker->widest() <= kWidest * height * (1 << 2 * kHalvingsMax))) {
         return refuse(SC_BAD_VALUE,
                       walker->motion->blend == SC_BLEND_LINEAR ? SC_FIELD_MORPH_WEIGHTS : SC_FIELD_JOINTS);
       }
@@ -203,7 +203,7 @@ class Step {
     pose_at(1, true);
     double share = 1;
     const double widest = std::max(a.widest(), b.widest()), reach = greatest_move();
-    for (int k = 0; k < kMostHalvings; ++k) {
+    for (int k = 0; k < kHalvingsMax; ++k) {
       if (widest * share * share > kWidest * height || reach * share > kFarthest * height) {
         share /= 2;
       }
@@ -359,7 +359,7 @@ class Step {
     Batch::take(&batch, {found.pairs, found.count});
   }
 
-  // Of pairs of clusters, where there are too many for one list.
+  // A batch of cluster pairs, where there are too many for one list.
   struct Batch {
     Target resolved;
     const MovingBodies& bodies;
@@ -382,7 +382,7 @@ class Step {
 
   const StepJob& job_;
   Target resolved_;
-  Room& room_;
+  StepMemory& room_;
   bool are_one_;
   Walker& b_;
 };
@@ -403,20 +403,20 @@ bool MovingClusters::put(std::size_t a, std::size_t b) {
 
 std::size_t step_scratch_words(const Motion* a, const Motion* b) noexcept {
   const auto is_one = [](const Motion& motion) {
-    return check_asset(motion.body.asset) == SC_OK && motion.joint_count <= kMostJoints;
+    return check_asset(motion.body.asset) == SC_OK && motion.joint_count <= kJointsMax;
   };
   if (a == nullptr || !is_one(*a) || (b != nullptr && !is_one(*b))) {
     return 0;
   }
   WordMemory memory(nullptr);
-  Room room;
+  StepMemory room;
   room.take(memory, *a, b);
   return memory.used();
 }
 
 Status StepJob::run() noexcept {
   Target resolved{};
-  Room room;
+  StepMemory room;
   const Status status = check(*this, resolved, room);
   if (status != SC_OK) {
     return status;

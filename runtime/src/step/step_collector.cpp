@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNever = 2, kNoLast = -1;
 constexpr double kShortest = 1.0 / 65536;  // share of the step between two looks
-constexpr double kMostStraySteps =
+constexpr double kStrayStepsMax =
     1 << 10;  // the way is halved at most six times: each takes three quarters of the stray
 
 SixCorners corners_of(const TriangleCorners& a, const TriangleCorners& b) {
@@ -110,8 +110,8 @@ SixCorners StepCollector::corners_at(const MovingCandidate& candidate, double ti
 
 // The first time, on the way from one time to another, which may be the earlier, at which the two touch, up to `until`;
 // kNever: none. `then` is where the corners are at that time.
-double StepCollector::search(const MovingCandidate& candidate, const Way& way, double from, double to, double until,
-                             SixCorners& then) {
+double StepCollector::search(const MovingCandidate& candidate, const CornerPaths& way, double from, double to,
+                             double until, SixCorners& then) {
   const double limit = std::min((until - from) / (to - from), 1.0);
   const Approach found = approach(way, limit);
   if (found.outcome == Outcome::kApart) {
@@ -163,8 +163,8 @@ void StepCollector::decide(const MovingCandidate& candidate) {
                        (double{a_.motion->strays()[a_.skin.surface->clusters[candidate.cluster_a].sphere]} +
                         double{b_.motion->strays()[b_.skin.surface->clusters[candidate.cluster_b].sphere]});
   const SixCorners from = corners_of(candidate.a[0], candidate.b[0]), to = corners_of(candidate.a[1], candidate.b[1]);
-  const double step = std::max({tolerance_ / 2, stray / kMostStraySteps, resolution_of(from), resolution_of(to)});
-  const Way way{from, to, stray, step, kShortest / share};
+  const double step = std::max({tolerance_ / 2, stray / kStrayStepsMax, resolution_of(from), resolution_of(to)});
+  const CornerPaths way{from, to, stray, step, kShortest / share};
   double begins = kNever;
   SixCorners then;
   if (may_begin) {
@@ -187,8 +187,8 @@ void StepCollector::decide(const MovingCandidate& candidate) {
   if (may_end) {
     const double ends = search(candidate, {way.to, way.from, stray, way.step, way.shortest}, end_, begin_,
                                std::max(last, begin_), then);
-    // Of two that graze each other one of the two ways may find a contact, the other none. The way forward counts: so
-    // no time depends on the order in which triangles are looked at.
+    // If two triangles graze each other, the search forward may find a contact that the search backward misses, or the
+    // reverse. The search forward counts, so no time depends on the order in which triangles are looked at.
     if (ends != kNever && ends > last &&
         (begins != kNever || search(candidate, way, begin_, end_, end_, then) != kNever)) {
       entry(part_a, part_b).last = ends;
@@ -203,7 +203,7 @@ std::size_t StepCollector::list(Span<StepContact> out) const {
       if (count < out.size) {
         const StepEntry& of = table_.contacts[64 * w + lowest_bit(word)];
         out[count] = of.contact;
-        // What touches at the end, and no earlier for all that was seen, touches from then on.
+        // A pair in contact at the end, and not seen earlier, is in contact from that time on.
         out[count].begin = static_cast<float>(std::min(of.first, 1.0));
         out[count].end = static_cast<float>(std::max(of.last, std::min(of.first, 1.0)));
       }

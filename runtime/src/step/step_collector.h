@@ -16,12 +16,12 @@ struct StepEntry {
 };
 using StepTable = TableOfParts<StepEntry>;
 
-// A body on its way.
+// One body during the step.
 struct StepBody {
-  Skin skin;
+  FilteredSkin skin;
   BodyMotion* motion;
-  std::uint16_t*
-      parts;  // scratch memory: of each cluster the part of all its triangles, or kSeveral; kUnknown at first
+  // Scratch memory: for each cluster the part of all its triangles, or kSeveral; kUnknown at first.
+  std::uint16_t* parts;
 
   static constexpr std::uint16_t kSeveral = 0xFFFE, kUnknown = 0xFFFF;
   std::uint16_t part_of(std::size_t cluster);
@@ -33,11 +33,11 @@ class StepCollector {
   StepCollector(const StepBody& a, const StepBody& b, bool are_one, const StepTable& table, double tolerance)
       : a_(a), b_(b), are_one_(are_one), table_(table), tolerance_(tolerance) {}
 
-  // Those have contacts at the start of the step, or at its end.
+  // Notes a part contact at the start of the step, or at its end.
   void note_end(const PartContact& contact, bool at_start);
   // Is that known of all parts of two clusters?
   bool touch_at_end(const Pair& clusters, bool at_start);
-  // What follows is of that part of the step.
+  // Begins a piece of the step: contacts that are added next belong to it.
   void begin_piece(double begin, double end) {
     begin_ = begin;
     end_ = end;
@@ -52,7 +52,7 @@ class StepCollector {
   StepEntry& entry(std::uint32_t part_a, std::uint32_t part_b);
   const StepEntry* known(std::uint32_t part_a, std::uint32_t part_b) const;  // null: nothing
   const StepEntry* known_of_clusters(std::size_t cluster_a, std::size_t cluster_b);
-  double search(const MovingCandidate& candidate, const Way& way, double from, double to, double until,
+  double search(const MovingCandidate& candidate, const CornerPaths& way, double from, double to, double until,
                 SixCorners& then);
   SixCorners corners_at(const MovingCandidate& candidate, double time);
 

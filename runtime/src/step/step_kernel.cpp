@@ -37,7 +37,7 @@ HWY_INLINE void sweep_boxes(const BoxColumns& from, const BoxColumns& to, Vector
   }
 }
 
-// What roundings of a box' vertices may be, and of a gap along a direction: 2^-20 of the greatest coordinate.
+// Bound of the rounding errors of a box' vertices and of a gap along a direction: 2^-20 of the greatest coordinate.
 HWY_INLINE Vector rounding_of(const BoxColumns& boxes, std::size_t i) {
   constexpr Floats kFloats;
   Vector most = hn::Zero(kFloats);
@@ -106,7 +106,7 @@ HWY_INLINE bool pass_by(const Box& start_a, const Box& end_a, const Box& start_b
   return first > last;
 }
 
-// Of two directions, one of the start's and the end's middle.
+// Direction from box a's middle to box b's, summed over the start and the end of the step. Its length has no meaning.
 HWY_INLINE void middle_direction(const Box& start_a, const Box& end_a, const Box& start_b, const Box& end_b,
                                  float (&direction)[3]) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -121,7 +121,8 @@ HWY_INLINE float length_of(const float (&direction)[3]) {
   return hn::GetLane(hn::Sqrt(hn::Set(kOne, squared)));
 }
 
-// min n.b - max n.a of two sets of points, x then y then z; lanes up to a vector past the count may be dirt.
+// The gap min n.b - max n.a between two sets of points a and b along the direction n. Points are stored as x, y and z
+// columns. Lanes up to a vector past the count may hold anything.
 HWY_INLINE float gap_along(const float (&direction)[3], const float* const (&a)[3], std::size_t count_a,
                            const float* const (&b)[3], std::size_t count_b) {
   constexpr Floats kFloats;
@@ -141,7 +142,8 @@ HWY_INLINE float gap_along(const float (&direction)[3], const float* const (&a)[
   return hn::GetLane(hn::MinOfLanes(kFloats, least)) - hn::GetLane(hn::MaxOfLanes(kFloats, most));
 }
 
-// Does one plane, that keeps its direction, part two spheres' hulls at the start and at the end? See hulls_apart().
+// True if one plane of constant direction separates two spheres' hulls at the start and at the end of the step. See
+// hulls_apart().
 HWY_INLINE bool hulls_stay_apart(const MovingScene& scene_a, std::size_t a, const MovingScene& scene_b, std::size_t b,
                                  float stray) {
   float direction[3];
@@ -161,7 +163,7 @@ HWY_INLINE bool hulls_stay_apart(const MovingScene& scene_a, std::size_t a, cons
   return is_gap(scene_a.start, scene_b.start) && is_gap(scene_a.end, scene_b.end);
 }
 
-// Bit k: a's sphere first + k is to be paired with b's sphere b. Of one body only those before b.
+// Bit k is set if a's sphere first + k is to be paired with b's sphere b. Within one body only spheres before b are.
 HWY_INLINE std::uint64_t paired(const MovingBodies& bodies, std::size_t first, std::size_t b) {
   const ContactScene& scene = bodies.a.start;
   std::uint64_t bits = ~std::uint64_t{0};
@@ -220,7 +222,7 @@ void find_spheres(const MovingBodies& bodies, Span<Pair>& pairs) {
   put_spheres(bodies, found, pairs);
 }
 
-// Do the spans along one direction miss each other at the start and at the end, in the same order?
+// True if the two clusters' spans along one direction are disjoint at the start and at the end, in the same order.
 HWY_INLINE bool spans_stay_apart(const MovingBodies& bodies, std::size_t a, std::size_t b, float stray) {
   constexpr hn::CappedTag<float, kSpanLanes> d;
   const auto wide = hn::Set(d, stray * kRootOfTwo * (1 + 0x1p-20F));  // the diagonals' length
@@ -240,7 +242,7 @@ HWY_INLINE bool spans_stay_apart(const MovingBodies& bodies, std::size_t a, std:
   return false;
 }
 
-// Does a plane across the line between two clusters part them at the start and at the end?
+// True if a plane across the line between two clusters separates them at the start and at the end.
 HWY_NOINLINE bool plane_stays_between(const MovingBodies& bodies, std::size_t a, std::size_t b, float stray) {
   float direction[3];
   middle_direction(box_of_span(bodies.a.start, a), box_of_span(bodies.a.end, a), box_of_span(bodies.b.start, b),
@@ -256,7 +258,7 @@ HWY_NOINLINE bool plane_stays_between(const MovingBodies& bodies, std::size_t a,
 
 using PlacePairs = PairList<kLanes * kLanes>;
 
-// The triangles of two registers of the blocks whose boxes around the way touch.
+// Lists the pairs of triangles from two registers whose boxes touch. A box encloses its triangle during the whole step.
 HWY_INLINE void find_places(const MovingBlock& block, const MovingBlock& other, std::size_t i, std::size_t j,
                             PlacePairs& out) {
   constexpr Floats kFloats;
@@ -279,7 +281,8 @@ HWY_NOINLINE void pair_blocks(const MovingBodies& bodies, const MovingBlock& blo
       for (std::size_t k = 0; k < places.count; k += kLanes) {
         const std::size_t left = places.count - k;
         std::uint64_t bits = ~std::uint64_t{0} >> (64 - (left < kLanes ? left : kLanes));
-        bits &= ~stay_apart(MovingTaken(block, i, places.a + k), MovingTaken(other, j, places.b + k), stray);
+        bits &= ~stay_apart(GatheredMovingTriangles(block, i, places.a + k),
+                            GatheredMovingTriangles(other, j, places.b + k), stray);
         for (; bits != 0; bits &= bits - 1) {
           const std::size_t lane = lowest_bit(bits);
           const std::size_t one = i + static_cast<std::size_t>(places.a[k + lane]);
@@ -297,7 +300,7 @@ HWY_NOINLINE void pair_blocks(const MovingBodies& bodies, const MovingBlock& blo
   }
 }
 
-// False where a cluster has no shape at one end.
+// Returns false if a cluster has no shape at the start or at the end.
 HWY_INLINE bool load_both(const MovingScene& scene, std::size_t cluster) {
   const auto has_shape = [&](const ContactScene& pose) HWY_ATTR {
     if (pose.is_loaded[cluster] == 0) {
@@ -309,7 +312,7 @@ HWY_INLINE bool load_both(const MovingScene& scene, std::size_t cluster) {
   return has_shape(scene.start) && has_shape(scene.end);
 }
 
-// May triangles of two clusters touch on the way?
+// Returns false only if no triangles of two clusters can touch during the step.
 HWY_NOINLINE bool may_touch(const MovingBodies& bodies, std::size_t a, std::size_t b, float stray) {
   return !pass_by(box_at(bodies.a.start.clusters, a), box_at(bodies.a.end.clusters, a),
                   box_at(bodies.b.start.clusters, b), box_at(bodies.b.end.clusters, b), stray) &&

@@ -12,9 +12,9 @@
 #include "gpu_time.h"
 #include "mesh/error.h"
 
-using spherechain::paper::gpu_m1_is_faster;
+using spherechain::paper::evaluate_gpu_m1_faster;
+using spherechain::paper::evaluate_gpu_needs_many;
 using spherechain::paper::gpu_medians;
-using spherechain::paper::gpu_needs_many;
 using spherechain::paper::GpuTime;
 using spherechain::paper::read_gpu_time;
 using spherechain::paper::Table;
@@ -44,11 +44,11 @@ Table medians_of(const std::vector<Times>& methods, double overhead) {
 }
 
 std::string m1_faster(const Times& m2, const Times& chain, const Times& place, double overhead) {
-  return gpu_m1_is_faster(medians_of({m2, chain, place}, overhead)).verdict;
+  return evaluate_gpu_m1_faster(medians_of({m2, chain, place}, overhead)).verdict;
 }
 
 std::string needs_many(const Times& gpu, const Times& cpu) {
-  return gpu_needs_many(medians_of({gpu, cpu, {"cpu_m1", {1e9, 1e9, 1e9}}}, 0)).verdict;
+  return evaluate_gpu_needs_many(medians_of({gpu, cpu, {"cpu_m1", {1e9, 1e9, 1e9}}}, 0)).verdict;
 }
 
 std::string written(const std::string& text) {
@@ -64,8 +64,8 @@ TEST_CASE("where no GPU was run there are no times, and both claims say so") {
   const GpuTime time = read_gpu_time("nowhere/figure16.json");
   CHECK(time.frames.empty());
   CHECK(gpu_medians(time).empty());
-  CHECK(gpu_m1_is_faster(gpu_medians(time)).verdict == "not run");
-  CHECK(gpu_needs_many(gpu_medians(time)).verdict == "not run");
+  CHECK(evaluate_gpu_m1_faster(gpu_medians(time)).verdict == "not run");
+  CHECK(evaluate_gpu_needs_many(gpu_medians(time)).verdict == "not run");
 }
 
 TEST_CASE("a file that is not the program's is refused by name, not taken for a run without times") {

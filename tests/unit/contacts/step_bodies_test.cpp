@@ -23,10 +23,10 @@ std::vector<float> frame_at(std::size_t frame, const Eigen::Affine3d& place) {
 }
 
 // One of the human stands, with a move of its own; another of it comes from the side, into it, while it turns.
-struct Meeting {
+struct TwoBodies {
   std::vector<float> a[2], b[2];
 
-  explicit Meeting(std::size_t frame) {
+  explicit TwoBodies(std::size_t frame) {
     const double height = double{sc_asset_get_info(moving_human().asset.handle()).height};
     const Eigen::AngleAxisd turn(0.15, Eigen::Vector3d(0.3, 0.8, 0.2).normalized());
     a[0] = moving_human().frames[frame].palette;
@@ -62,7 +62,7 @@ TEST_CASE("steps of two bodies: what poses on the way have is found, and nothing
   constexpr int kPoses = 32;
   std::size_t total = 0, passed = 0;
   for (const std::size_t frame : {0, 12}) {
-    const Meeting two(frame);
+    const TwoBodies two(frame);
     const StepContacts found = run(two.job());
     total += found.contacts.size();
     for (int k = 0; k <= kPoses; ++k) {
@@ -89,7 +89,7 @@ TEST_CASE("steps of two bodies: what poses on the way have is found, and nothing
 }
 
 TEST_CASE("with the bodies of a step swapped all is the same, the other way round") {
-  const Meeting two(4);
+  const TwoBodies two(4);
   StepJob job = two.job();
   const StepContacts found = run(job);
   std::swap(job.a, job.b);
@@ -107,7 +107,7 @@ TEST_CASE("with the bodies of a step swapped all is the same, the other way roun
 }
 
 TEST_CASE("parts that a body ignores touch nothing in a step") {
-  const Meeting two(4);
+  const TwoBodies two(4);
   StepJob job = two.job();
   const StepContacts all = run(job);
   REQUIRE(!all.contacts.empty());

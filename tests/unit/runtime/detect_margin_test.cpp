@@ -53,7 +53,7 @@ std::vector<Sphere> couples(std::size_t count, float scale, float offset, float 
 
 }  // namespace
 
-TEST_CASE("pairs a few roundings from touching are judged by the formula alone, at any scale and place") {
+TEST_CASE("pairs a few roundings from touching are decided by the formula alone, at any scale and place") {
   std::mt19937 random(7);
   std::size_t reported = 0, close = 0;
   for (const std::size_t n : {2U, 30U, 128U, 150U}) {

@@ -85,7 +85,7 @@ TEST_CASE("a rest pair is reported only where it is closer than its scale, which
   CHECK(pairs_of(parts, apart(0.0F), SC_RADIUS_DETECT).empty());
 }
 
-TEST_CASE("a scale just below 1 is judged by the formula alone, at the distances where the full sum flips") {
+TEST_CASE("a scale just below 1 is decided by the formula alone, at the distances where the full sum flips") {
   AssetParts parts = plain_asset(2);
   const float scale = std::nextafter(1.0F, 0.0F);
   parts.rest_detect = {{0, 1, scale}};

@@ -40,13 +40,13 @@ struct Scene {
   }
 };
 
-struct Box {
+struct BodyBox {
   Vec3 low, high;
 };
 
-Box box_of(const SceneBody& body) {
+BodyBox box_of(const SceneBody& body) {
   if (body.spheres == nullptr) return {body.low, body.high};
-  Box box{{HUGE_VALF, HUGE_VALF, HUGE_VALF}, {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF}};
+  BodyBox box{{HUGE_VALF, HUGE_VALF, HUGE_VALF}, {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF}};
   for (std::size_t i = 0; i < body.sphere_count; ++i) {
     const Sphere& s = body.spheres[i];
     if (s.radius < 0) continue;
@@ -60,7 +60,7 @@ Box box_of(const SceneBody& body) {
 
 bool meet(const SceneBody& a, const SceneBody& b) {
   if (a.spheres == nullptr || b.spheres == nullptr) {
-    const Box p = box_of(a), q = box_of(b);
+    const BodyBox p = box_of(a), q = box_of(b);
     return p.low.x <= q.high.x && q.low.x <= p.high.x && p.low.y <= q.high.y && q.low.y <= p.high.y &&
            p.low.z <= q.high.z && q.low.z <= p.high.z;
   }

@@ -22,7 +22,7 @@ TEST_CASE("of two triangles that go straight no contact longer than a step of th
   std::size_t touch = 0, apart = 0;
   for (int i = 0; i < 3000; ++i) {
     CAPTURE(i);
-    StraightPath way{};
+    CornerPaths way{};
     for (std::size_t k = 0; k < 6; ++k) {
       const auto any = [&] { return double{uniform(random, -0.5F, 0.5F)}; };
       way.from.p[k] = {any() + (k < 3 ? 0 : 0.7), any(), any()};
