@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a block of the crowd's kernels sees: the table's entries, a group's pointers, and the block's own memory.
+// The data that a block of the crowd's kernels sees: the table's entries, a group's pointers, and the block's own
+// memory.
 #pragma once
 
 #include <cstddef>

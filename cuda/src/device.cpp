@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What talks to CUDA's runtime for enqueue_crowds().
+// The calls of CUDA's runtime for enqueue_crowds().
 #include <cuda_runtime_api.h>
 
 #include "asset/status.h"

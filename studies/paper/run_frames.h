@@ -9,7 +9,7 @@
 
 namespace spherechain::paper {
 
-// The timed methods. M1 and M2 are plain loops (pairs/plain_detection.h) that leave ignored pairs out. The full ones
+// The timed methods. M1 and M2 are plain loops (studies/plain_detection.h) that leave ignored pairs out. The full ones
 // are the paper's loops to the letter, n_c n^2 and m^2 comparisons of every sphere with every other. Refit and
 // all_pairs are the product's jobs.
 enum RunMethod : std::size_t { kRefit, kM1, kM2, kFullM1, kFullM2, kProduct };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the FlatBuffers verifier cannot know of an asset: that indices point at something and figures are figures.
+// Checks that the FlatBuffers verifier cannot make of an asset: that indices point at something and figures are
+// figures.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What an open sc_asset holds: spans into the asset's bytes. Private to this repository: runtime, cuda, baker, tests.
+// The contents of an open sc_asset: spans into the asset's bytes. Private to this repository: runtime, cuda, baker,
+// tests.
 #pragma once
 
 #include <cstddef>

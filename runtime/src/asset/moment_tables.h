@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What refit from bones reads: schemas/sphere_chains.fbs, Moments. docs/arithmetic.md has the arithmetic.
+// The tables that refit from bones reads: schemas/sphere_chains.fbs, Moments. docs/arithmetic.md has the arithmetic.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What of a body is below a plane, or below ground over it, part by part.
+// Measures the skin of a body that is below a plane, or below ground over it, part by part.
 #include <algorithm>
 #include <cmath>
 

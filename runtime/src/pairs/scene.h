@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a detect job looks at.
+// The spheres and tables that a detect job looks at.
 #pragma once
 
 #include "pairs/pair_lists.h"

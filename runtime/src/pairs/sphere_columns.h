@@ -88,7 +88,7 @@ HWY_INLINE bool fill_all(const Sphere* spheres, std::size_t count, const Sphere&
 // each h is, and where two spheres touch, -h(q) and some of the products are together at least rq^2 - G (px qx >= -(px
 // - qx)^2 / 4, and so on). So sums overflow upwards, if at all.
 //
-// Of kBlocks blocks of kBlock columns from `first` on, calls use(strip, bits) of each for the rows [begin, end), with
+// For kBlocks blocks of kBlock columns from `first` on, calls use(strip, bits) of each for the rows [begin, end), with
 // at least the bits of the pairs that touch. Strips follow each other from `strip` on by block, and are `step` apart by
 // row.
 template <std::size_t kBlocks, typename Use>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What refit by moments reads. Kernels use the spans' pointers alone: they are compiled once a target and may use no
+// The inputs of refit by moments. Kernels use the spans' pointers alone: they are compiled once a target and may use no
 // inline function of the headers.
 #pragma once
 

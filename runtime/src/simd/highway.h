@@ -15,8 +15,8 @@
 // they include this header before the guard, so that each target meets the guard as the others do.
 
 #if !defined(HWY_DISABLED_TARGETS)
-// Of Highway's list, which grows, only the targets of spherechain::Target; by number where Highway 1.0.3 has no name:
-// SSE2 and NEON without AES.
+// The targets of Highway's list, which grows, that are in spherechain::Target; by number where Highway 1.0.3 has no
+// name: SSE2 and NEON without AES.
 #define HWY_DISABLED_TARGETS \
   (~(HWY_SCALAR | (1LL << 14) | HWY_SSSE3 | HWY_AVX2 | HWY_AVX3 | HWY_NEON | (1LL << 29) | HWY_WASM))
 // The scalar target is always there to compare with, and is the same one for every compiler.

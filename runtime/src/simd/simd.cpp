@@ -107,8 +107,8 @@ bool machine_has(Target target) {
   return (found >> index_of(target) & 1U) != 0;
 }
 #else
-// What the machine has, as libgcc or compiler-rt found it out before main(): a look into a table, no instruction that
-// traps under a hypervisor. They also ask whether the operating system saves the wide registers.
+// Whether the machine has a target, as libgcc or compiler-rt found out before main(): a look into a table, no
+// instruction that traps under a hypervisor. They also ask whether the operating system saves the wide registers.
 bool machine_has([[maybe_unused]] Target target) {
 #if HWY_ARCH_X86 && (defined(__GNUC__) || defined(__clang__))
   switch (target) {

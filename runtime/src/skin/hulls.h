@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What spheres' skins are near to in a pose, from bones alone: their hulls' points.
+// The points that spheres' skins are near to in a pose, from bones alone: their hulls' points.
 //
 // With the weights w_b of a vertex v, o_kb of a point p_k and l_k the vertex' shares of the points, let
 //   r_b = w_b (v - c; 1) - sum_k l_k o_kb (p_k - c; 1),    four coordinates for each bone b,

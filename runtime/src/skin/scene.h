@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the stages of a skin contact job hand to each other.
+// The data that the stages of a skin contact job hand to each other.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What single precision can tell of pairs of triangles.
+// The answers that single precision can give about pairs of triangles.
 #include "simd/highway.h"
 
 #if defined(SPHERECHAIN_SKIN_SINGLE_PRECISION_H) == defined(HWY_TARGET_TOGGLE)  // once a target

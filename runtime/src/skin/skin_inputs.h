@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What skinning clusters reads. Kernels use the spans' pointers alone: they are compiled once a target and may use no
-// inline function of the headers.
+// The inputs of skinning clusters. Kernels use the spans' pointers alone: they are compiled once a target and may use
+// no inline function of the headers.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Of each two body parts: when they first touch in a step, and when last.
+// Collects for each two body parts when they first touch in a step, and when last.
 #pragma once
 
 #include "skin/left_out.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What touches on the way from one pose to the next, and when?
+// Finds the body parts that touch on the way from one pose to the next, and when.
 #pragma once
 
 #include "skin/contact_jobs.h"
