@@ -122,7 +122,7 @@ TEST_CASE("a fist that goes through the thigh within one step is found there, th
   const Eigen::Vector3d shoulder = place("left_shoulder"), hand = place("left_wrist"), hip = place("left_hip");
   const Eigen::Quaterniond raised(Eigen::AngleAxisd(-1.9, left));
   const Eigen::Vector3d inside = hip + raised * (0.5 * (place("left_knee") - hip));
-  const Eigen::Quaterniond pointed = turn_between(hand - shoulder, inside - shoulder);
+  const Eigen::Quaterniond pointed = spherechain::baker::turn_between(hand - shoulder, inside - shoulder);
   const Eigen::Vector3d axis = (inside - shoulder).cross(left).normalized();
   const auto posed = [&](double angle) {
     std::vector<float> out = rest_palette();
