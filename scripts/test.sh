@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 if [[ "${1:-}" == --fast ]]; then
   cmake --preset release >/dev/null
   cmake --build --preset release --target all
-  scripts/lint.sh
+  scripts/lint.sh HEAD
   exec ctest --preset release --no-tests=error \
     -R '^(rules|sample|golden|csharp\.(generated|palettes)|python\.(gradients|refusals))|^unit\.(runtime|contacts)$'
 fi
