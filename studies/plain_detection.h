@@ -8,8 +8,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "asset/asset_view.h"
-#include "pairs/pair_bits.h"
+#include "runtime/src/asset/asset_view.h"
+#include "runtime/src/base/pair_bits.h"
 
 namespace spherechain {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bind/bind.h"
+#include "baker/bind/bind.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "bind/neighbours.h"
-#include "fit/bone_weights.h"
-#include "mesh/surface_query.h"
+#include "baker/bind/neighbours.h"
+#include "baker/fit/bone_weights.h"
+#include "baker/mesh/surface_query.h"
 
 namespace spherechain::baker {
 namespace {

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "fit/fit.h"
-#include "import/import.h"
-#include "segment/segment.h"
+#include "baker/fit/fit.h"
+#include "baker/import/import.h"
+#include "baker/segment/segment.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bind/bind_bones.h"
+#include "baker/bind/bind_bones.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "bind/bind.h"
-#include "rig/rig.h"
+#include "baker/bind/bind.h"
+#include "baker/rig/rig.h"
 
 namespace spherechain::baker {
 

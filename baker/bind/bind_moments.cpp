@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bind/bind_moments.h"
+#include "baker/bind/bind_moments.h"
 
 #include <algorithm>
 #include <limits>
 #include <map>
 
-#include "mesh/error.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "bind/bind_bones.h"
+#include "baker/bind/bind_bones.h"
 
 namespace spherechain::baker {
 

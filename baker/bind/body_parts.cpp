@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bind/body_parts.h"
+#include "baker/bind/body_parts.h"
 
 #include <algorithm>
 #include <map>
 #include <tuple>
 
-#include "bind/bind_bones.h"
-#include "bind/part_names.h"
+#include "baker/bind/bind_bones.h"
+#include "baker/bind/part_names.h"
 
 namespace spherechain::baker {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "import/import.h"
-#include "rig/rig.h"
-#include "roles/roles.h"
-#include "segment/segment.h"
+#include "baker/import/import.h"
+#include "baker/rig/rig.h"
+#include "baker/roles/roles.h"
+#include "baker/segment/segment.h"
 
 namespace spherechain::baker {
 

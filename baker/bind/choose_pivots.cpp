@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "bind/bind.h"
+#include "baker/bind/bind.h"
 
 namespace spherechain::baker {
 namespace {

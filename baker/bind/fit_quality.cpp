@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bind/fit_quality.h"
+#include "baker/bind/fit_quality.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "mesh/area_samples.h"
-#include "mesh/even_directions.h"
-#include "mesh/surface_query.h"
+#include "baker/mesh/area_samples.h"
+#include "baker/mesh/even_directions.h"
+#include "baker/mesh/surface_query.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bind/bind.h"
+#include "baker/bind/bind.h"
 
 namespace spherechain::baker {
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "bind/bind_moments.h"
+#include "baker/bind/bind_moments.h"
 
 namespace spherechain::baker {
 namespace {

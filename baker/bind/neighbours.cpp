@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bind/neighbours.h"
+#include "baker/bind/neighbours.h"
 
 #include <algorithm>
 #include <array>

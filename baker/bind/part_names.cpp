@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bind/part_names.h"
+#include "baker/bind/part_names.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <string_view>
 
-#include "roles/names.h"
+#include "baker/roles/names.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "import/source_rig.h"
-#include "roles/roles.h"
-#include "segment/segment.h"
+#include "baker/import/source_rig.h"
+#include "baker/roles/roles.h"
+#include "baker/segment/segment.h"
 
 namespace spherechain::baker {
 

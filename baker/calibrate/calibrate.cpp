@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "calibrate/calibrate.h"
+#include "baker/calibrate/calibrate.h"
 
 #include <algorithm>
 #include <optional>
 
-#include "calibrate/random_poses.h"
-#include "calibrate/reach.h"
-#include "calibrate/samples.h"
-#include "calibrate/skin_gap.h"
+#include "baker/calibrate/random_poses.h"
+#include "baker/calibrate/reach.h"
+#include "baker/calibrate/samples.h"
+#include "baker/calibrate/skin_gap.h"
 
 namespace spherechain::baker {
 namespace {

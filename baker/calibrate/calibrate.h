@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "bind/bind.h"
-#include "import/import.h"
-#include "rig/rig.h"
-#include "segment/segment.h"
+#include "baker/bind/bind.h"
+#include "baker/import/import.h"
+#include "baker/rig/rig.h"
+#include "baker/segment/segment.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "calibrate/random_poses.h"
+#include "baker/calibrate/random_poses.h"
 
 #include <algorithm>
 #include <cmath>

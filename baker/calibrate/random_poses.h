@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/random.h"
-#include "import/import.h"
-#include "import/moved_nodes.h"
-#include "rig/rig.h"
+#include "baker/calibrate/random.h"
+#include "baker/import/import.h"
+#include "baker/import/moved_nodes.h"
+#include "baker/rig/rig.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "calibrate/reach.h"
+#include "baker/calibrate/reach.h"
 
 #include <algorithm>
 #include <array>

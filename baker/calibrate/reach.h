@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "calibrate/samples.h"
+#include "baker/calibrate/samples.h"
 
 namespace spherechain::baker {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "calibrate/samples.h"
+#include "baker/calibrate/samples.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/error.h"
-#include "refit/refit_job.h"
-#include "skin/contact_jobs.h"
+#include "baker/mesh/error.h"
+#include "runtime/src/contacts/contact_jobs.h"
+#include "runtime/src/refit/refit_job.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "calibrate/random_poses.h"
+#include "baker/calibrate/random_poses.h"
 #include "spherechain/types.h"
 
 namespace spherechain::baker {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "calibrate/skin_gap.h"
+#include "baker/calibrate/skin_gap.h"
 
 #include <algorithm>
 #include <limits>

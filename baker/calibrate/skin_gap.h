@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "bind/bind.h"
-#include "mesh/surface_query.h"
+#include "baker/bind/bind.h"
+#include "baker/mesh/surface_query.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "chains/chains.h"
+#include "baker/chains/chains.h"
 
 #include <algorithm>
 

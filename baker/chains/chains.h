@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/fit.h"
+#include "baker/fit/fit.h"
 
 namespace spherechain::baker {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "check/baseline.h"
+#include "baker/check/baseline.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <filesystem>
 
-#include "check/class_names.h"
-#include "check/json_input.h"
-#include "mesh/error.h"
-#include "play/asset_file.h"
-#include "report/json_text.h"
+#include "baker/check/class_names.h"
+#include "baker/check/json_input.h"
+#include "baker/mesh/error.h"
+#include "baker/play/asset_file.h"
+#include "baker/report/json_text.h"
 
 namespace spherechain::baker {
 namespace {

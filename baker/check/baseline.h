@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "check/results.h"
+#include "baker/check/results.h"
 
 namespace spherechain::baker {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <nlohmann/json.hpp>
 
-#include "check/formats.h"
-#include "report/json_text.h"
-#include "report/number_json.h"
-#include "report/vec3_json.h"
-#include "write/version.h"
+#include "baker/check/formats.h"
+#include "baker/report/json_text.h"
+#include "baker/report/number_json.h"
+#include "baker/report/vec3_json.h"
+#include "baker/write/version.h"
 
 namespace spherechain::baker {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "check/formats.h"
-#include "play/motion_frames.h"
+#include "baker/check/formats.h"
+#include "baker/play/motion_frames.h"
 
 namespace spherechain::baker {
 namespace {

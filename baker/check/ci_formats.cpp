@@ -6,11 +6,11 @@
 #include <set>
 #include <string_view>
 
-#include "check/formats.h"
-#include "mesh/utf8.h"
-#include "play/motion_frames.h"
-#include "report/json_text.h"
-#include "write/version.h"
+#include "baker/check/formats.h"
+#include "baker/mesh/utf8.h"
+#include "baker/play/motion_frames.h"
+#include "baker/report/json_text.h"
+#include "baker/write/version.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "check/clip_check.h"
+#include "baker/check/clip_check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "check/events.h"
-#include "page/base64.h"
-#include "page/page_axes.h"
-#include "page/page_motion.h"
-#include "page/page_penetrations.h"
-#include "play/hidden_joints.h"
-#include "report/json_text.h"
+#include "baker/check/events.h"
+#include "baker/page/base64.h"
+#include "baker/page/page_axes.h"
+#include "baker/page/page_motion.h"
+#include "baker/page/page_penetrations.h"
+#include "baker/play/hidden_joints.h"
+#include "baker/report/json_text.h"
 
 namespace spherechain::baker {
 namespace {

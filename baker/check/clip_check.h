@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "check/picture.h"
-#include "check/results.h"
-#include "play/play.h"
-#include "play/skin_player.h"
+#include "baker/check/picture.h"
+#include "baker/check/results.h"
+#include "baker/play/play.h"
+#include "baker/play/skin_player.h"
 
 namespace spherechain::baker {
 

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "check/library.h"
-#include "check/run.h"
-#include "mesh/error.h"
+#include "baker/check/library.h"
+#include "baker/check/run.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 

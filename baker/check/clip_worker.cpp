@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "check/clip_worker.h"
+#include "baker/check/clip_worker.h"
 
 #include <fmt/format.h>
 
-#include "check/clip_check.h"
-#include "check/file_hash.h"
-#include "import/child_process.h"
-#include "import/notes.h"
-#include "mesh/error.h"
-#include "page/page.h"
-#include "play/steps.h"
-#include "play/target.h"
+#include "baker/check/clip_check.h"
+#include "baker/check/file_hash.h"
+#include "baker/import/child_process.h"
+#include "baker/import/notes.h"
+#include "baker/mesh/error.h"
+#include "baker/page/page.h"
+#include "baker/play/steps.h"
+#include "baker/play/target.h"
 
 namespace spherechain::baker {
 namespace {

@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 
-#include "check/clip_queue.h"
-#include "check/run.h"
-#include "check/store.h"
-#include "check/workers.h"
+#include "baker/check/clip_queue.h"
+#include "baker/check/run.h"
+#include "baker/check/store.h"
+#include "baker/check/workers.h"
 
 namespace spherechain::baker {
 

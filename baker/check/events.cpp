@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "check/events.h"
+#include "baker/check/events.h"
 
 #include <algorithm>
 #include <cstdint>

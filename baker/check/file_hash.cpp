@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "check/file_hash.h"
+#include "baker/check/file_hash.h"
 
 #include <cstdint>
 
-#include "import/child_process.h"
-#include "import/import.h"
-#include "import/sha256.h"
+#include "baker/import/child_process.h"
+#include "baker/import/import.h"
+#include "baker/import/sha256.h"
 
 namespace spherechain::baker {
 

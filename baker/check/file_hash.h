@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "mesh/error.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 

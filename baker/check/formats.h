@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "check/verdict.h"
+#include "baker/check/verdict.h"
 
 namespace spherechain::baker {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "check/json_input.h"
+#include "baker/check/json_input.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "import/json_depth.h"
-#include "mesh/error.h"
+#include "baker/import/json_depth.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "check/library.h"
+#include "baker/check/library.h"
 
 #include <fmt/format.h>
 
@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "check/json_input.h"
-#include "mesh/error.h"
-#include "mesh/utf8.h"
-#include "play/asset_file.h"
-#include "roles/roles.h"
+#include "baker/check/json_input.h"
+#include "baker/mesh/error.h"
+#include "baker/mesh/utf8.h"
+#include "baker/play/asset_file.h"
+#include "baker/roles/roles.h"
 
 namespace spherechain::baker {
 namespace {

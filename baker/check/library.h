@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "check/rules.h"
+#include "baker/check/rules.h"
 
 namespace spherechain::baker {
 

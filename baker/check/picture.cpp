@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "check/picture.h"
+#include "baker/check/picture.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "mesh/even_directions.h"
+#include "baker/mesh/even_directions.h"
 
 // The library is C of another style: its warnings are not ours to mend.
 #pragma GCC diagnostic push

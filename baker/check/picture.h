@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "import/import.h"
-#include "segment/body_plan.h"
+#include "baker/import/import.h"
+#include "baker/segment/body_plan.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "check/report_folder.h"
+#include "baker/check/report_folder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,14 +9,14 @@
 #include <optional>
 #include <set>
 
-#include "check/formats.h"
-#include "mesh/error.h"
-#include "page/base64.h"
-#include "play/asset_file.h"
-#include "report/json_text.h"
-#include "report/number_json.h"
-#include "report/vec3_json.h"
-#include "write/own_folder.h"
+#include "baker/check/formats.h"
+#include "baker/mesh/error.h"
+#include "baker/page/base64.h"
+#include "baker/play/asset_file.h"
+#include "baker/report/json_text.h"
+#include "baker/report/number_json.h"
+#include "baker/report/vec3_json.h"
+#include "baker/write/own_folder.h"
 
 namespace spherechain::baker {
 namespace {

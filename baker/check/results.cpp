@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "check/results.h"
+#include "baker/check/results.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "report/json_text.h"
-#include "report/vec3_json.h"
+#include "baker/report/json_text.h"
+#include "baker/report/vec3_json.h"
 
 namespace spherechain::baker {
 namespace {

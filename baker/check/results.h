@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/mesh.h"
-#include "play/skin_player.h"
+#include "baker/mesh/mesh.h"
+#include "baker/play/skin_player.h"
 
 // Results of a check before any rule. They depend only on the character, clip, settings and tool.
 namespace spherechain::baker {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "check/rules.h"
+#include "baker/check/rules.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "check/json_input.h"
-#include "filter/part_filter.h"
-#include "mesh/error.h"
+#include "baker/check/json_input.h"
+#include "baker/filter/part_filter.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "check/results.h"
-#include "pipeline/pipeline.h"
+#include "baker/check/results.h"
+#include "baker/pipeline/pipeline.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "check/run.h"
+#include "baker/check/run.h"
 
 #include <fmt/format.h>
 
@@ -9,15 +9,15 @@
 #include <optional>
 #include <set>
 
-#include "check/clip_queue.h"
-#include "check/clip_worker.h"
-#include "check/file_hash.h"
-#include "import/child_process.h"
-#include "import/notes.h"
-#include "import/sha256.h"
-#include "mesh/error.h"
-#include "mesh/utf8.h"
-#include "report/report.h"
+#include "baker/check/clip_queue.h"
+#include "baker/check/clip_worker.h"
+#include "baker/check/file_hash.h"
+#include "baker/import/child_process.h"
+#include "baker/import/notes.h"
+#include "baker/import/sha256.h"
+#include "baker/mesh/error.h"
+#include "baker/mesh/utf8.h"
+#include "baker/report/report.h"
 
 namespace spherechain::baker {
 namespace {

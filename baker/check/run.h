@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "check/library.h"
-#include "check/results.h"
-#include "check/store.h"
-#include "import/source_rig.h"
+#include "baker/check/library.h"
+#include "baker/check/results.h"
+#include "baker/check/store.h"
+#include "baker/import/source_rig.h"
 
 namespace spherechain::baker {
 

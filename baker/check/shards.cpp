@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "check/shards.h"
+#include "baker/check/shards.h"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "mesh/error.h"
-#include "play/asset_file.h"
-#include "report/json_text.h"
-#include "write/version.h"
-#include "write/write.h"
+#include "baker/mesh/error.h"
+#include "baker/play/asset_file.h"
+#include "baker/report/json_text.h"
+#include "baker/write/version.h"
+#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "check/verdict.h"
+#include "baker/check/verdict.h"
 
 namespace spherechain::baker {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "check/store.h"
+#include "baker/check/store.h"
 
 #include <fstream>
 #include <sstream>
 
-#include "import/sha256.h"
-#include "mesh/error.h"
-#include "write/version.h"
-#include "write/write.h"
+#include "baker/import/sha256.h"
+#include "baker/mesh/error.h"
+#include "baker/write/version.h"
+#include "baker/write/write.h"
 
 namespace spherechain::baker {
 

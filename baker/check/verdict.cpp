@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "check/verdict.h"
+#include "baker/check/verdict.h"
 
 #include <algorithm>
 #include <cmath>

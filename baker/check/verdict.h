@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "check/baseline.h"
-#include "check/rules.h"
-#include "check/run.h"
+#include "baker/check/baseline.h"
+#include "baker/check/rules.h"
+#include "baker/check/run.h"
 
 namespace spherechain::baker {
 

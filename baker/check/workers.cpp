@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "check/workers.h"
+#include "baker/check/workers.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -14,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
-#include "import/child_process.h"
-#include "mesh/error.h"
+#include "baker/import/child_process.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/outputs.h"
-#include "cli/progress.h"
-#include "pipeline/pipeline.h"
-#include "play/asset_file.h"
-#include "report/preview.h"
-#include "report/report.h"
-#include "write/write.h"
+#include "baker/cli/commands.h"
+#include "baker/cli/console.h"
+#include "baker/cli/outputs.h"
+#include "baker/cli/progress.h"
+#include "baker/pipeline/pipeline.h"
+#include "baker/play/asset_file.h"
+#include "baker/report/preview.h"
+#include "baker/report/report.h"
+#include "baker/write/write.h"
 
 namespace spherechain::baker {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/between.h"
+#include "baker/cli/between.h"
 
 #include <fmt/format.h>
 
-#include "cli/progress.h"
-#include "play/steps.h"
-#include "play/target.h"
+#include "baker/cli/progress.h"
+#include "baker/play/steps.h"
+#include "baker/play/target.h"
 
 namespace spherechain::baker {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "play/play.h"
+#include "baker/play/play.h"
 
 namespace spherechain::baker {
 

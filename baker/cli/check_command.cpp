@@ -7,19 +7,19 @@
 #include <optional>
 #include <thread>
 
-#include "check/formats.h"
-#include "check/report_folder.h"
-#include "check/shards.h"
-#include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/installed.h"
-#include "cli/outputs.h"
-#include "cli/progress.h"
-#include "fix/fix_library.h"
-#include "import/notes.h"
-#include "play/asset_file.h"
-#include "write/work_folder.h"
-#include "write/write.h"
+#include "baker/check/formats.h"
+#include "baker/check/report_folder.h"
+#include "baker/check/shards.h"
+#include "baker/cli/commands.h"
+#include "baker/cli/console.h"
+#include "baker/cli/installed.h"
+#include "baker/cli/outputs.h"
+#include "baker/cli/progress.h"
+#include "baker/fix/fix_library.h"
+#include "baker/import/notes.h"
+#include "baker/play/asset_file.h"
+#include "baker/write/work_folder.h"
+#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/error.h"
-#include "play/play.h"
+#include "baker/mesh/error.h"
+#include "baker/play/play.h"
 
 namespace spherechain::baker {
 

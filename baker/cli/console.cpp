@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/console.h"
+#include "baker/cli/console.h"
 
 #include <algorithm>
 #include <cstdint>
 
-#include "mesh/utf8.h"
+#include "baker/mesh/utf8.h"
 
 namespace spherechain::baker {
 namespace {

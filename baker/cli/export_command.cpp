@@ -5,19 +5,19 @@
 #include <filesystem>
 #include <optional>
 
-#include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/outputs.h"
-#include "export/formats.h"
-#include "export/glb_json.h"
-#include "export/ignore_by_filter.h"
-#include "import/import.h"
-#include "mesh/error.h"
-#include "pipeline/pipeline.h"
-#include "report/report.h"
-#include "volumes/fit_volumes.h"
-#include "volumes/measure.h"
-#include "write/write.h"
+#include "baker/cli/commands.h"
+#include "baker/cli/console.h"
+#include "baker/cli/outputs.h"
+#include "baker/export/formats.h"
+#include "baker/export/glb_json.h"
+#include "baker/export/ignore_by_filter.h"
+#include "baker/import/import.h"
+#include "baker/mesh/error.h"
+#include "baker/pipeline/pipeline.h"
+#include "baker/report/report.h"
+#include "baker/volumes/fit_volumes.h"
+#include "baker/volumes/measure.h"
+#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

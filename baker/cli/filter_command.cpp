@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/outputs.h"
-#include "cli/progress.h"
-#include "filter/confidence.h"
-#include "filter/find_filter.h"
-#include "filter/joint_limits.h"
-#include "play/target.h"
-#include "write/write.h"
+#include "baker/cli/commands.h"
+#include "baker/cli/console.h"
+#include "baker/cli/outputs.h"
+#include "baker/cli/progress.h"
+#include "baker/filter/confidence.h"
+#include "baker/filter/find_filter.h"
+#include "baker/filter/joint_limits.h"
+#include "baker/play/target.h"
+#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

@@ -6,17 +6,17 @@
 #include <filesystem>
 #include <optional>
 
-#include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/installed.h"
-#include "cli/outputs.h"
-#include "cli/progress.h"
-#include "fix/fix_character.h"
-#include "motion/capture.h"
-#include "motion/sequence.h"
-#include "page/page_of_two.h"
-#include "write/own_folder.h"
-#include "write/write.h"
+#include "baker/cli/commands.h"
+#include "baker/cli/console.h"
+#include "baker/cli/installed.h"
+#include "baker/cli/outputs.h"
+#include "baker/cli/progress.h"
+#include "baker/fix/fix_character.h"
+#include "baker/motion/capture.h"
+#include "baker/motion/sequence.h"
+#include "baker/page/page_of_two.h"
+#include "baker/write/own_folder.h"
+#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

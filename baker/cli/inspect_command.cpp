@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include "cli/commands.h"
-#include "cli/console.h"
-#include "play/asset_file.h"
-#include "report/report.h"
+#include "baker/cli/commands.h"
+#include "baker/cli/console.h"
+#include "baker/play/asset_file.h"
+#include "baker/report/report.h"
 
 namespace spherechain::baker {
 

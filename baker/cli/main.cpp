@@ -12,13 +12,13 @@
 #include <exception>
 #include <functional>
 
-#include "cli/commands.h"
-#include "cli/console.h"
-#include "import/notes.h"
-#include "pipeline/pipeline.h"
-#include "play/target.h"
-#include "volumes/fit_volumes.h"
-#include "write/version.h"
+#include "baker/cli/commands.h"
+#include "baker/cli/console.h"
+#include "baker/import/notes.h"
+#include "baker/pipeline/pipeline.h"
+#include "baker/play/target.h"
+#include "baker/volumes/fit_volumes.h"
+#include "baker/write/version.h"
 
 namespace {
 

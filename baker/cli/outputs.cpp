@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/outputs.h"
+#include "baker/cli/outputs.h"
 
 #include <unistd.h>
 
@@ -9,11 +9,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "mesh/error.h"
-#include "motion/poses.h"
-#include "motion/sequence.h"
-#include "play/play.h"
-#include "write/write.h"
+#include "baker/mesh/error.h"
+#include "baker/motion/poses.h"
+#include "baker/motion/sequence.h"
+#include "baker/play/play.h"
+#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "write/own_file.h"
+#include "baker/write/own_file.h"
 
 namespace spherechain::baker {
 

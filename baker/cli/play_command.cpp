@@ -5,22 +5,22 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "cli/between.h"
-#include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/outputs.h"
-#include "cli/progress.h"
-#include "import/notes.h"
-#include "mesh/error.h"
-#include "play/cuda_frames.h"
-#include "play/hidden_joints.h"
-#include "play/player.h"
-#include "play/target.h"
-#include "report/part_contacts.h"
-#include "report/parts.h"
-#include "report/play_frames.h"
-#include "report/report.h"
-#include "write/version.h"
+#include "baker/cli/between.h"
+#include "baker/cli/commands.h"
+#include "baker/cli/console.h"
+#include "baker/cli/outputs.h"
+#include "baker/cli/progress.h"
+#include "baker/import/notes.h"
+#include "baker/mesh/error.h"
+#include "baker/play/cuda_frames.h"
+#include "baker/play/hidden_joints.h"
+#include "baker/play/player.h"
+#include "baker/play/target.h"
+#include "baker/report/part_contacts.h"
+#include "baker/report/parts.h"
+#include "baker/report/play_frames.h"
+#include "baker/report/report.h"
+#include "baker/write/version.h"
 
 namespace spherechain::baker {
 namespace {

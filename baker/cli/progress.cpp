@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/progress.h"
+#include "baker/cli/progress.h"
 
 #include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
 
-#include "cli/console.h"
+#include "baker/cli/console.h"
 
 namespace spherechain::baker {
 

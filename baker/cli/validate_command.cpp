@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include "cli/between.h"
-#include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/outputs.h"
-#include "cli/progress.h"
-#include "play/target.h"
-#include "report/validation.h"
-#include "truth/truth_cache.h"
-#include "truth/validate.h"
-#include "write/write.h"
+#include "baker/cli/between.h"
+#include "baker/cli/commands.h"
+#include "baker/cli/console.h"
+#include "baker/cli/outputs.h"
+#include "baker/cli/progress.h"
+#include "baker/play/target.h"
+#include "baker/report/validation.h"
+#include "baker/truth/truth_cache.h"
+#include "baker/truth/validate.h"
+#include "baker/write/write.h"
 
 namespace spherechain::baker {
 

@@ -4,18 +4,18 @@
 #include <filesystem>
 #include <optional>
 
-#include "cli/between.h"
-#include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/installed.h"
-#include "cli/outputs.h"
-#include "cli/progress.h"
-#include "export/ignore_by_filter.h"
-#include "page/page.h"
-#include "page/page_inputs.h"
-#include "page/page_of_two.h"
-#include "volumes/fit_volumes.h"
-#include "write/write.h"
+#include "baker/cli/between.h"
+#include "baker/cli/commands.h"
+#include "baker/cli/console.h"
+#include "baker/cli/installed.h"
+#include "baker/cli/outputs.h"
+#include "baker/cli/progress.h"
+#include "baker/export/ignore_by_filter.h"
+#include "baker/page/page.h"
+#include "baker/page/page_inputs.h"
+#include "baker/page/page_of_two.h"
+#include "baker/volumes/fit_volumes.h"
+#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,8 +4,8 @@
 #include <limits>
 #include <map>
 
-#include "clusters/clusters.h"
-#include "clusters/round_up.h"
+#include "baker/clusters/clusters.h"
+#include "baker/clusters/round_up.h"
 
 namespace spherechain::baker {
 namespace {

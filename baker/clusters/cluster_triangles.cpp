@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include "clusters/clusters.h"
-#include "mesh/decompose.h"
+#include "baker/clusters/clusters.h"
+#include "baker/mesh/decompose.h"
 
 namespace spherechain::baker {
 namespace {

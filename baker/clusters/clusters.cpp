@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "clusters/clusters.h"
+#include "baker/clusters/clusters.h"
 
 #include <algorithm>
 #include <map>

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "bind/bind.h"
-#include "bind/bind_bones.h"
+#include "baker/bind/bind.h"
+#include "baker/bind/bind_bones.h"
 
 namespace spherechain::baker {
 

@@ -6,8 +6,8 @@
 #include <queue>
 #include <utility>
 
-#include "clusters/clusters.h"
-#include "clusters/round_up.h"
+#include "baker/clusters/clusters.h"
+#include "baker/clusters/round_up.h"
 
 namespace spherechain::baker {
 namespace {

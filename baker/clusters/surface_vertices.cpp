@@ -3,7 +3,7 @@
 #include <map>
 #include <tuple>
 
-#include "clusters/clusters.h"
+#include "baker/clusters/clusters.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "edits/edit_spheres.h"
+#include "baker/edits/edit_spheres.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <optional>
 #include <tuple>
 
-#include "edits/region_axes.h"
+#include "baker/edits/region_axes.h"
 
 namespace spherechain::baker {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "bind/bind.h"
-#include "edits/edits.h"
+#include "baker/bind/bind.h"
+#include "baker/edits/edits.h"
 
 namespace spherechain::baker {
 

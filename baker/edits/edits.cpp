@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "edits/edits.h"
+#include "baker/edits/edits.h"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "mesh/error.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {

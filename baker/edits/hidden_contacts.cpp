@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "edits/hidden_contacts.h"
+#include "baker/edits/hidden_contacts.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bind/bind.h"
-#include "bind/body_parts.h"
+#include "baker/bind/bind.h"
+#include "baker/bind/body_parts.h"
 
 namespace spherechain::baker {
 

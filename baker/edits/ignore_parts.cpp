@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "edits/ignore_parts.h"
+#include "baker/edits/ignore_parts.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <optional>
 #include <set>
 
-#include "bind/neighbours.h"
-#include "fit/piece.h"
+#include "baker/bind/neighbours.h"
+#include "baker/fit/piece.h"
 
 namespace spherechain::baker {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bind/bind.h"
-#include "bind/body_parts.h"
-#include "edits/edit_spheres.h"
+#include "baker/bind/bind.h"
+#include "baker/bind/body_parts.h"
+#include "baker/edits/edit_spheres.h"
 
 namespace spherechain::baker {
 

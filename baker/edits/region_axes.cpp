@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "edits/region_axes.h"
+#include "baker/edits/region_axes.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
 
-#include "mesh/decompose.h"
+#include "baker/mesh/decompose.h"
 
 namespace spherechain::baker {
 namespace {

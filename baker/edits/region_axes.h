@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "edits/edits.h"
-#include "segment/body_plan.h"
+#include "baker/edits/edits.h"
+#include "baker/segment/body_plan.h"
 
 namespace spherechain::baker {
 

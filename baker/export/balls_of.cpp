@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "export/robot.h"
-#include "mesh/even_directions.h"
+#include "baker/export/robot.h"
+#include "baker/mesh/even_directions.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include "export/for_engines.h"
-#include "export/formats.h"
-#include "export/names.h"
-#include "scripts.h"
+#include "baker/export/for_engines.h"
+#include "baker/export/formats.h"
+#include "baker/export/names.h"
+#include "baker/export/scripts.h"
 
 // A scene of Godot 4 to put under a Skeleton3D. Godot sets a PhysicalBone3D to its bone's transform without scale,
 // which is our body's frame: no offset is needed, and shapes are in metres whatever the bone's scale.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <nlohmann/json.hpp>
 
-#include "export/formats.h"
-#include "volumes/volume_json.h"
+#include "baker/export/formats.h"
+#include "baker/volumes/volume_json.h"
 
 namespace spherechain::baker {
 

@@ -5,14 +5,14 @@
 // parts may follow one bone.
 #include <fmt/format.h>
 
-#include "export/formats.h"
-#include "export/glb_json.h"
-#include "export/rest_nodes.h"
-#include "export/simple_volumes.h"
-#include "mesh/decompose.h"
-#include "mesh/error.h"
-#include "volumes/volume_json.h"
-#include "write/glb_mark.h"
+#include "baker/export/formats.h"
+#include "baker/export/glb_json.h"
+#include "baker/export/rest_nodes.h"
+#include "baker/export/simple_volumes.h"
+#include "baker/mesh/decompose.h"
+#include "baker/mesh/error.h"
+#include "baker/volumes/volume_json.h"
+#include "baker/write/glb_mark.h"
 
 namespace spherechain::baker {
 

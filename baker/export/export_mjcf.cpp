@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "export/robot.h"
+#include "baker/export/robot.h"
 
 // MuJoCo's XML. A body a part, in the frame of the one that it hangs on; quaternions w x y z.
 namespace spherechain::baker {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "export/robot.h"
+#include "baker/export/robot.h"
 
 // The two YAML files that planners with collision spheres read, each beside its URDF. Numbers have a point and no
 // exponent, and names quotes: YAML 1.1 takes 1e-05 for a text and no for false.

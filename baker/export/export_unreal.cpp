@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "export/for_engines.h"
-#include "export/formats.h"
-#include "scripts.h"
+#include "baker/export/for_engines.h"
+#include "baker/export/formats.h"
+#include "baker/export/scripts.h"
 
 // The JSON is that of capsules.json, in metres and right-handed: the script turns it as Unreal's importers do.
 namespace spherechain::baker {

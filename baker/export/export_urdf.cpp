@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "export/robot.h"
+#include "baker/export/robot.h"
 
 namespace spherechain::baker {
 namespace {

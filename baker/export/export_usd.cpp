@@ -5,9 +5,9 @@
 #include <cctype>
 #include <cmath>
 
-#include "export/for_engines.h"
-#include "export/formats.h"
-#include "export/names.h"
+#include "baker/export/for_engines.h"
+#include "baker/export/formats.h"
+#include "baker/export/names.h"
 
 // A stage as text: an Xform a body part, kinematic, with its volumes below it. It stands in the axes of the source
 // file, in metres, so that it lies on the character where both are loaded.

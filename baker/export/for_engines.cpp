@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "export/for_engines.h"
+#include "baker/export/for_engines.h"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <map>
 
-#include "export/simple_volumes.h"
-#include "mesh/decompose.h"
-#include "mesh/error.h"
+#include "baker/export/simple_volumes.h"
+#include "baker/mesh/decompose.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "volumes/colliders.h"
+#include "baker/volumes/colliders.h"
 
 // Colliders as game engines can hold them. Each function replaces what they cannot, and adds a sentence to `notes`
 // where something is lost.

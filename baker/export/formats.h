@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "volumes/colliders.h"
+#include "baker/volumes/colliders.h"
 
 // Colliders as the files that other programs read. Each writer is a function from colliders to texts; what it cannot
 // say in its format it replaces, and says so in `notes`.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "export/glb_json.h"
+#include "baker/export/glb_json.h"
 
 #include <algorithm>
 
-#include "mesh/error.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 

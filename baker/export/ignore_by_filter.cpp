@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "export/ignore_by_filter.h"
+#include "baker/export/ignore_by_filter.h"
 
 #include <algorithm>
 #include <map>

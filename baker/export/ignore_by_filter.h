@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "filter/part_filter.h"
-#include "volumes/colliders.h"
+#include "baker/filter/part_filter.h"
+#include "baker/volumes/colliders.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "export/names.h"
+#include "baker/export/names.h"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "volumes/colliders.h"
+#include "baker/volumes/colliders.h"
 
 namespace spherechain::baker {
 

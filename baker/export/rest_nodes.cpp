@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "export/rest_nodes.h"
+#include "baker/export/rest_nodes.h"
 
 #include <nlohmann/json.hpp>
 
-#include "export/glb_json.h"
+#include "baker/export/glb_json.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "export/robot.h"
+#include "baker/export/robot.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <cctype>
 #include <filesystem>
 
-#include "export/names.h"
-#include "export/solid_grid.h"
+#include "baker/export/names.h"
+#include "baker/export/solid_grid.h"
 
 namespace spherechain::baker {
 namespace {

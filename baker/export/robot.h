@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "export/formats.h"
+#include "baker/export/formats.h"
 
 // Common parts of the robotics formats: names, masses, joints, and balls in place of solids that a format lacks. World:
 // metres, +Z up, the character looks along +X (to_z_up).

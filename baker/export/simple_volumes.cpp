@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "export/simple_volumes.h"
+#include "baker/export/simple_volumes.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/even_directions.h"
+#include "baker/mesh/even_directions.h"
 
 namespace spherechain::baker {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "volumes/volume.h"
+#include "baker/volumes/volume.h"
 
 // Volumes for formats that have few kinds of them.
 namespace spherechain::baker {

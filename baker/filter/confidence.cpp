@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "filter/confidence.h"
+#include "baker/filter/confidence.h"
 
 #include <boost/math/distributions/binomial.hpp>
 

@@ -7,10 +7,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "filter/confidence.h"
-#include "filter/part_filter.h"
-#include "mesh/error.h"
-#include "write/version.h"
+#include "baker/filter/confidence.h"
+#include "baker/filter/part_filter.h"
+#include "baker/mesh/error.h"
+#include "baker/write/version.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "filter/find_filter.h"
+#include "baker/filter/find_filter.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <climits>
 
-#include "filter/confidence.h"
+#include "baker/filter/confidence.h"
 
 namespace spherechain::baker {
 

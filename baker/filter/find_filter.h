@@ -4,10 +4,10 @@
 #include <functional>
 #include <string>
 
-#include "calibrate/random_poses.h"
-#include "filter/part_filter.h"
-#include "filter/touching_parts.h"
-#include "play/play.h"
+#include "baker/calibrate/random_poses.h"
+#include "baker/filter/part_filter.h"
+#include "baker/filter/touching_parts.h"
+#include "baker/play/play.h"
 
 namespace spherechain::baker {
 

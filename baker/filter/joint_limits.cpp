@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "filter/joint_limits.h"
+#include "baker/filter/joint_limits.h"
 
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "mesh/error.h"
-#include "play/asset_file.h"
+#include "baker/mesh/error.h"
+#include "baker/play/asset_file.h"
 
 namespace spherechain::baker {
 

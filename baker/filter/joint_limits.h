@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "calibrate/random_poses.h"
+#include "baker/calibrate/random_poses.h"
 
 namespace spherechain::baker {
 

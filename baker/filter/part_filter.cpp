@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "filter/part_filter.h"
+#include "baker/filter/part_filter.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "filter/touching_parts.h"
+#include "baker/filter/touching_parts.h"
 
 namespace spherechain::baker {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "filter/touching_parts.h"
+#include "baker/filter/touching_parts.h"
 
 #include <algorithm>
 
-#include "play/skin_player.h"
-#include "skin/contact_jobs.h"
+#include "baker/play/skin_player.h"
+#include "runtime/src/contacts/contact_jobs.h"
 
 namespace spherechain::baker {
 

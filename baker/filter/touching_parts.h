@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "play/play.h"
+#include "baker/play/play.h"
 #include "spherechain/contacts.h"
 
 namespace spherechain::baker {

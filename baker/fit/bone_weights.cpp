@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fit/bone_weights.h"
+#include "baker/fit/bone_weights.h"
 
 #include <algorithm>
 

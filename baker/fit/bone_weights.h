@@ -4,7 +4,7 @@
 #include <boost/container/flat_map.hpp>
 #include <vector>
 
-#include "import/import.h"
+#include "baker/import/import.h"
 
 namespace spherechain::baker {
 

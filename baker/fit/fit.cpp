@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fit/fit.h"
+#include "baker/fit/fit.h"
 
 #include <algorithm>
 #include <cmath>

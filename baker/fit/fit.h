@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "import/import.h"
-#include "mesh/attempt.h"
-#include "mesh/surface_query.h"
-#include "segment/segment.h"
+#include "baker/import/import.h"
+#include "baker/mesh/attempt.h"
+#include "baker/mesh/surface_query.h"
+#include "baker/segment/segment.h"
 
 namespace spherechain::baker {
 

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <optional>
 
-#include "fit/fit.h"
-#include "fit/march.h"
-#include "mesh/decompose.h"
-#include "mesh/ring.h"
+#include "baker/fit/fit.h"
+#include "baker/fit/march.h"
+#include "baker/mesh/decompose.h"
+#include "baker/mesh/ring.h"
 
 namespace spherechain::baker {
 namespace {

@@ -7,9 +7,9 @@
 #include <optional>
 #include <set>
 
-#include "fit/bone_weights.h"
-#include "fit/fit.h"
-#include "fit/piece.h"
+#include "baker/fit/bone_weights.h"
+#include "baker/fit/fit.h"
+#include "baker/fit/piece.h"
 
 namespace spherechain::baker {
 namespace {

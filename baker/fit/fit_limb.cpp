@@ -3,9 +3,9 @@
 // overlaps the last one by PD.
 #include <algorithm>
 
-#include "fit/fit.h"
-#include "fit/march.h"
-#include "mesh/ring.h"
+#include "baker/fit/fit.h"
+#include "baker/fit/march.h"
+#include "baker/mesh/ring.h"
 
 namespace spherechain::baker {
 namespace {

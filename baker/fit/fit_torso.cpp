@@ -6,9 +6,9 @@
 #include <optional>
 #include <utility>
 
-#include "fit/fit.h"
-#include "fit/march.h"
-#include "mesh/ring.h"
+#include "baker/fit/fit.h"
+#include "baker/fit/march.h"
+#include "baker/mesh/ring.h"
 
 namespace spherechain::baker {
 namespace {

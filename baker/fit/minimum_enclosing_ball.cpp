@@ -3,7 +3,7 @@
 #include <CGAL/Min_sphere_of_spheres_d.h>
 #include <CGAL/Simple_cartesian.h>
 
-#include "fit/fit.h"
+#include "baker/fit/fit.h"
 
 namespace spherechain::baker {
 

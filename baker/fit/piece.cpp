@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fit/piece.h"
+#include "baker/fit/piece.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "mesh/area_samples.h"
-#include "mesh/decompose.h"
-#include "mesh/even_directions.h"
+#include "baker/mesh/area_samples.h"
+#include "baker/mesh/decompose.h"
+#include "baker/mesh/even_directions.h"
 
 namespace spherechain::baker {
 namespace {

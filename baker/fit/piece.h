@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "fit/fit.h"
-#include "mesh/surface_query.h"
+#include "baker/fit/fit.h"
+#include "baker/mesh/surface_query.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/bvh_text.h"
+#include "baker/fix/bvh_text.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "import/bvh_file.h"
+#include "baker/import/bvh_file.h"
 
 namespace spherechain::baker {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/compare.h"
+#include "baker/fix/compare.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
-#include "mesh/surface_query.h"
+#include "baker/mesh/surface_query.h"
 
 namespace spherechain::baker {
 namespace {

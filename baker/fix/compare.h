@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "fix/turned_clip.h"
-#include "play/play.h"
+#include "baker/fix/turned_clip.h"
+#include "baker/play/play.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/constraints.h"
+#include "baker/fix/constraints.h"
 
 #include <algorithm>
 #include <cmath>

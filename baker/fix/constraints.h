@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "fix/solve.h"
-#include "fix/turned_clip.h"
+#include "baker/fix/solve.h"
+#include "baker/fix/turned_clip.h"
 
 namespace spherechain::baker {
 

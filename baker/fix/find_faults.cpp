@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/find_faults.h"
+#include "baker/fix/find_faults.h"
 
 #include <algorithm>
 #include <exception>
 #include <thread>
 
-#include "play/target.h"
+#include "baker/play/target.h"
 
 namespace spherechain::baker {
 namespace {

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "fix/turned_clip.h"
-#include "fix/ways_out.h"
-#include "play/play.h"
-#include "play/skin_player.h"
-#include "play/steps.h"
+#include "baker/fix/turned_clip.h"
+#include "baker/fix/ways_out.h"
+#include "baker/play/play.h"
+#include "baker/play/skin_player.h"
+#include "baker/play/steps.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/fix_character.h"
+#include "baker/fix/fix_character.h"
 
 #include <fmt/format.h>
 
@@ -9,14 +9,14 @@
 #include <filesystem>
 #include <set>
 
-#include "check/run.h"
-#include "fix/turned_recording.h"
-#include "fix/write_clip.h"
-#include "mesh/error.h"
-#include "mesh/utf8.h"
-#include "motion/carried_motion.h"
-#include "motion/frame_times.h"
-#include "pipeline/pipeline.h"
+#include "baker/check/run.h"
+#include "baker/fix/turned_recording.h"
+#include "baker/fix/write_clip.h"
+#include "baker/mesh/error.h"
+#include "baker/mesh/utf8.h"
+#include "baker/motion/carried_motion.h"
+#include "baker/motion/frame_times.h"
+#include "baker/pipeline/pipeline.h"
 
 namespace spherechain::baker {
 namespace {

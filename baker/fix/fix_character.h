@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "check/baseline.h"
-#include "check/rules.h"
-#include "fix/fix_report.h"
+#include "baker/check/baseline.h"
+#include "baker/check/rules.h"
+#include "baker/fix/fix_report.h"
 
 namespace spherechain::baker {
 

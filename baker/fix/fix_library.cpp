@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/fix_library.h"
+#include "baker/fix/fix_library.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
 
-#include "check/workers.h"
-#include "fix/fix_character.h"
-#include "mesh/error.h"
-#include "write/own_file.h"
-#include "write/write.h"
+#include "baker/check/workers.h"
+#include "baker/fix/fix_character.h"
+#include "baker/mesh/error.h"
+#include "baker/write/own_file.h"
+#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "check/verdict.h"
+#include "baker/check/verdict.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/fix_report.h"
+#include "baker/fix/fix_report.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "report/json_text.h"
-#include "write/version.h"
+#include "baker/report/json_text.h"
+#include "baker/write/version.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "bind/body_parts.h"
-#include "fix/mend.h"
+#include "baker/bind/body_parts.h"
+#include "baker/fix/mend.h"
 
 namespace spherechain::baker {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/goals.h"
+#include "baker/fix/goals.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "check/events.h"
+#include "baker/check/events.h"
 
 namespace spherechain::baker {
 namespace {

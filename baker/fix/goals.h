@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "fix/find_faults.h"
-#include "fix/mend.h"
-#include "fix/separations.h"
+#include "baker/fix/find_faults.h"
+#include "baker/fix/mend.h"
+#include "baker/fix/separations.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/joints.h"
+#include "baker/fix/joints.h"
 
 #include <algorithm>
 #include <map>

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "fix/turned_clip.h"
-#include "roles/roles.h"
+#include "baker/fix/turned_clip.h"
+#include "baker/roles/roles.h"
 
 namespace spherechain::baker {
 

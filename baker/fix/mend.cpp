@@ -2,7 +2,7 @@
 // Gauss-Newton over a whole clip. Each penetration of two body parts in a frame adds a constraint: their deepest points
 // separate along the way out. Constraints of earlier rounds stay, so that separated parts do not come back. If an event
 // gets no better, a search by trial gives its limb target turns.
-#include "fix/mend.h"
+#include "baker/fix/mend.h"
 
 #include <fmt/format.h>
 
@@ -12,17 +12,17 @@
 #include <numbers>
 #include <set>
 
-#include "check/clip_check.h"
-#include "fix/constraints.h"
-#include "fix/find_faults.h"
-#include "fix/goals.h"
-#include "fix/joints.h"
-#include "fix/obstacle.h"
-#include "fix/part_joints.h"
-#include "fix/separations.h"
-#include "fix/solve.h"
-#include "fix/time_windows.h"
-#include "fix/ways_out.h"
+#include "baker/check/clip_check.h"
+#include "baker/fix/constraints.h"
+#include "baker/fix/find_faults.h"
+#include "baker/fix/goals.h"
+#include "baker/fix/joints.h"
+#include "baker/fix/obstacle.h"
+#include "baker/fix/part_joints.h"
+#include "baker/fix/separations.h"
+#include "baker/fix/solve.h"
+#include "baker/fix/time_windows.h"
+#include "baker/fix/ways_out.h"
 
 namespace spherechain::baker {
 namespace {

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "check/events.h"
-#include "fix/compare.h"
-#include "fix/turned_clip.h"
-#include "play/play.h"
-#include "roles/roles.h"
+#include "baker/check/events.h"
+#include "baker/fix/compare.h"
+#include "baker/fix/turned_clip.h"
+#include "baker/play/play.h"
+#include "baker/roles/roles.h"
 
 namespace spherechain::baker {
 

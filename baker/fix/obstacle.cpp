@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/obstacle.h"
+#include "baker/fix/obstacle.h"
 
 #include <algorithm>
 #include <numbers>

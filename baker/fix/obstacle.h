@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "fix/mend.h"
-#include "fix/part_joints.h"
+#include "baker/fix/mend.h"
+#include "baker/fix/part_joints.h"
 
 namespace spherechain::baker {
 

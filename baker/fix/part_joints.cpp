@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/part_joints.h"
+#include "baker/fix/part_joints.h"
 
 #include <algorithm>
 #include <iterator>
 
-#include "mesh/decompose.h"
+#include "baker/mesh/decompose.h"
 
 namespace spherechain::baker {
 namespace {

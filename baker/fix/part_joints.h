@@ -5,9 +5,9 @@
 #include <set>
 #include <vector>
 
-#include "fix/goals.h"
-#include "fix/turned_clip.h"
-#include "fix/ways_out.h"
+#include "baker/fix/goals.h"
+#include "baker/fix/turned_clip.h"
+#include "baker/fix/ways_out.h"
 
 namespace spherechain::baker {
 

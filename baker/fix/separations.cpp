@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/separations.h"
+#include "baker/fix/separations.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,9 +6,9 @@
 #include <tuple>
 #include <vector>
 
-#include "fix/solve.h"
-#include "fix/turned_clip.h"
-#include "play/play.h"
+#include "baker/fix/solve.h"
+#include "baker/fix/turned_clip.h"
+#include "baker/play/play.h"
 #include "spherechain/contacts.h"
 
 namespace spherechain::baker {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sparse normal equations. Their band is two frames wide, because terms couple only neighbours in time and the joints
 // of one constraint.
-#include "fix/solve.h"
+#include "baker/fix/solve.h"
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>

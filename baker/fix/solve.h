@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "fix/turned_clip.h"
+#include "baker/fix/turned_clip.h"
 
 namespace spherechain::baker {
 

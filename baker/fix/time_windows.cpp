@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/time_windows.h"
+#include "baker/fix/time_windows.h"
 
 #include <algorithm>
 #include <array>

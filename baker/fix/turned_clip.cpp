@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/turned_clip.h"
+#include "baker/fix/turned_clip.h"
 
 #include <algorithm>
 #include <cmath>

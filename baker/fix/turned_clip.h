@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "import/moved_nodes.h"
-#include "motion/clip.h"
+#include "baker/import/moved_nodes.h"
+#include "baker/motion/clip.h"
 
 namespace spherechain::baker {
 

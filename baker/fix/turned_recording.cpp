@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/turned_recording.h"
+#include "baker/fix/turned_recording.h"
 
 #include <cmath>
 
-#include "fix/bvh_text.h"
-#include "mesh/error.h"
-#include "motion/clip.h"
-#include "play/asset_file.h"
+#include "baker/fix/bvh_text.h"
+#include "baker/mesh/error.h"
+#include "baker/motion/clip.h"
+#include "baker/play/asset_file.h"
 
 namespace spherechain::baker {
 

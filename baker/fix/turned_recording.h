@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "motion/carried_motion.h"
+#include "baker/motion/carried_motion.h"
 
 namespace spherechain::baker {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/ways_out.h"
+#include "baker/fix/ways_out.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
 
-#include "fix/part_joints.h"
+#include "baker/fix/part_joints.h"
 
 namespace spherechain::baker {
 namespace {

@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "fix/turned_clip.h"
+#include "baker/fix/turned_clip.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fix/write_clip.h"
+#include "baker/fix/write_clip.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "mesh/error.h"
-#include "write/glb_mark.h"
+#include "baker/mesh/error.h"
+#include "baker/write/glb_mark.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fix/turned_clip.h"
+#include "baker/fix/turned_clip.h"
 
 namespace spherechain::baker {
 

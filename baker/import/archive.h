@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "import/import.h"
+#include "baker/import/import.h"
 
 namespace spherechain::baker {
 

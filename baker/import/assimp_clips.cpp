@@ -8,8 +8,8 @@
 #include <map>
 #include <string_view>
 
-#include "import/assimp_scene.h"
-#include "mesh/error.h"
+#include "baker/import/assimp_scene.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {

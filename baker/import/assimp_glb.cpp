@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Assimp's own exporter is not used: its users report that it drops morph targets (assimp 5352), and that FBX clips
 // come out at another speed or broken (4206, 4197, 5495).
-#include "import/assimp_glb.h"
+#include "baker/import/assimp_glb.h"
 
 #include <assimp/material.h>
 
@@ -10,9 +10,9 @@
 #include <map>
 #include <set>
 
-#include "import/glb_file.h"
-#include "import/srgb.h"
-#include "mesh/decompose.h"
+#include "baker/import/glb_file.h"
+#include "baker/import/srgb.h"
+#include "baker/mesh/decompose.h"
 
 namespace spherechain::baker {
 namespace {

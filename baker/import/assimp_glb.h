@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "import/assimp_scene.h"
-#include "import/import.h"
+#include "baker/import/assimp_scene.h"
+#include "baker/import/import.h"
 
 namespace spherechain::baker {
 

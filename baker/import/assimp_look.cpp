@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/assimp_look.h"
+#include "baker/import/assimp_look.h"
 
 #include <assimp/material.h>
 
 #include <algorithm>
 #include <map>
 
-#include "import/named_file.h"
-#include "import/srgb.h"
+#include "baker/import/named_file.h"
+#include "baker/import/srgb.h"
 
 namespace spherechain::baker {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "import/assimp_scene.h"
-#include "import/look.h"
+#include "baker/import/assimp_scene.h"
+#include "baker/import/look.h"
 
 namespace spherechain::baker {
 

@@ -4,9 +4,9 @@
 #include <map>
 #include <string_view>
 
-#include "import/assimp_scene.h"
-#include "import/pivots.h"
-#include "mesh/error.h"
+#include "baker/import/assimp_scene.h"
+#include "baker/import/pivots.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/assimp_scene.h"
+#include "baker/import/assimp_scene.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string_view>
 #include <utility>
 
-#include "import/choose_meshes.h"
-#include "import/one_space.h"
-#include "mesh/error.h"
+#include "baker/import/choose_meshes.h"
+#include "baker/import/one_space.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "import/source_rig.h"
+#include "baker/import/source_rig.h"
 
 namespace spherechain::baker {
 

@@ -7,10 +7,10 @@
 #include <sstream>
 #include <utility>
 
-#include "import/import.h"
-#include "import/notes.h"
-#include "import/pivots.h"
-#include "mesh/error.h"
+#include "baker/import/import.h"
+#include "baker/import/notes.h"
+#include "baker/import/pivots.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {

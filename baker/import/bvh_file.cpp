@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/bvh_file.h"
+#include "baker/import/bvh_file.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <optional>
 
-#include "mesh/error.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/child_process.h"
+#include "baker/import/child_process.h"
 
 #include <fcntl.h>
 #include <signal.h>

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "mesh/error.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 

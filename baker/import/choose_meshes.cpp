@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/choose_meshes.h"
+#include "baker/import/choose_meshes.h"
 
 #include <algorithm>
 #include <cctype>
@@ -7,9 +7,9 @@
 #include <optional>
 #include <set>
 
-#include "import/named_file.h"
-#include "import/notes.h"
-#include "mesh/error.h"
+#include "baker/import/named_file.h"
+#include "baker/import/notes.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {

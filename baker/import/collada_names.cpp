@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/collada_names.h"
+#include "baker/import/collada_names.h"
 
 #include <assimp/commonMetaData.h>
 

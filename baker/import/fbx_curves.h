@@ -3,7 +3,7 @@
 
 #include <assimp/scene.h>
 
-#include "import/fbx_file.h"
+#include "baker/import/fbx_file.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/fbx_file.h"
+#include "baker/import/fbx_file.h"
 
 #include <algorithm>
 #include <cmath>

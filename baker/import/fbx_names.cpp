@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/fbx_names.h"
+#include "baker/import/fbx_names.h"
 
 #include <algorithm>
 #include <map>

@@ -4,7 +4,7 @@
 #include <string>
 #include <unordered_map>
 
-#include "import/fbx_file.h"
+#include "baker/import/fbx_file.h"
 
 namespace spherechain::baker {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/glb_file.h"
+#include "baker/import/glb_file.h"
 
 #include <algorithm>
 #include <cstdint>
 
-#include "import/gltf_file.h"
-#include "import/look.h"
+#include "baker/import/gltf_file.h"
+#include "baker/import/look.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "import/gltf_file.h"
+#include "baker/import/gltf_file.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/gltf_clips.h"
+#include "baker/import/gltf_clips.h"
 
 #include <algorithm>
 
-#include "import/notes.h"
+#include "baker/import/notes.h"
 
 namespace spherechain::baker {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "import/gltf_skeleton.h"
+#include "baker/import/gltf_skeleton.h"
 
 namespace spherechain::baker {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/gltf_file.h"
+#include "baker/import/gltf_file.h"
 
 #include <cstring>
 #include <fstream>
 #include <sstream>
 
-#include "import/gltf_json.h"
-#include "import/look.h"
-#include "import/named_file.h"
-#include "mesh/error.h"
+#include "baker/import/gltf_json.h"
+#include "baker/import/look.h"
+#include "baker/import/named_file.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {

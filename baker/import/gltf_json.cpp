@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // tinygltf takes members of a wrong type for absent ones, keeps indices as they are and recurses into extras: a hostile
 // file is stopped here, before it.
-#include "import/gltf_json.h"
+#include "baker/import/gltf_json.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "import/json_depth.h"
-#include "mesh/error.h"
+#include "baker/import/json_depth.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/gltf_look.h"
+#include "baker/import/gltf_look.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "import/srgb.h"
-#include "mesh/error.h"
+#include "baker/import/srgb.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {

@@ -5,8 +5,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "import/gltf_file.h"
-#include "import/look.h"
+#include "baker/import/gltf_file.h"
+#include "baker/import/look.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/gltf_primitive.h"
+#include "baker/import/gltf_primitive.h"
 
 #include <algorithm>
 #include <utility>

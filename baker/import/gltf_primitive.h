@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "import/gltf_file.h"
-#include "import/source_rig.h"
-#include "mesh/mesh.h"
+#include "baker/import/gltf_file.h"
+#include "baker/import/source_rig.h"
+#include "baker/mesh/mesh.h"
 
 namespace spherechain::baker {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/gltf_skeleton.h"
+#include "baker/import/gltf_skeleton.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "import/one_space.h"
+#include "baker/import/one_space.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "import/gltf_file.h"
-#include "import/source_rig.h"
+#include "baker/import/gltf_file.h"
+#include "baker/import/source_rig.h"
 
 namespace spherechain::baker {
 

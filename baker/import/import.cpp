@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/import.h"
+#include "baker/import/import.h"
 
 #include <unistd.h>
 
@@ -10,15 +10,15 @@
 #include <fstream>
 #include <system_error>
 
-#include "import/archive.h"
-#include "import/glb_file.h"
-#include "import/gltf_file.h"
-#include "import/notes.h"
-#include "import/obj_file.h"
-#include "import/read_bvh.h"
-#include "import/read_in_child.h"
-#include "import/sha256.h"
-#include "mesh/error.h"
+#include "baker/import/archive.h"
+#include "baker/import/glb_file.h"
+#include "baker/import/gltf_file.h"
+#include "baker/import/notes.h"
+#include "baker/import/obj_file.h"
+#include "baker/import/read_bvh.h"
+#include "baker/import/read_in_child.h"
+#include "baker/import/sha256.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "import/look.h"
-#include "import/source_rig.h"
-#include "mesh/mesh.h"
+#include "baker/import/look.h"
+#include "baker/import/source_rig.h"
+#include "baker/mesh/mesh.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/json_depth.h"
+#include "baker/import/json_depth.h"
 
 #include <algorithm>
 

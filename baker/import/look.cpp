@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/look.h"
+#include "baker/import/look.h"
 
 #include <fstream>
 #include <sstream>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/moved_nodes.h"
+#include "baker/import/moved_nodes.h"
 
 namespace spherechain::baker {
 

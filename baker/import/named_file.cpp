@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/named_file.h"
+#include "baker/import/named_file.h"
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <string_view>
 
-#include "import/notes.h"
+#include "baker/import/notes.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/notes.h"
+#include "baker/import/notes.h"
 
 #include <algorithm>
 #include <utility>

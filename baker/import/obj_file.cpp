@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/obj_file.h"
+#include "baker/import/obj_file.h"
 
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <string_view>
 
-#include "import/named_file.h"
+#include "baker/import/named_file.h"
 
 namespace spherechain::baker {
 namespace {

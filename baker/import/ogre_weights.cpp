@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/ogre_weights.h"
+#include "baker/import/ogre_weights.h"
 
 #include <assimp/commonMetaData.h>
 

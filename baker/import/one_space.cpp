@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/one_space.h"
+#include "baker/import/one_space.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/pivots.h"
+#include "baker/import/pivots.h"
 
 #include <algorithm>
 #include <array>

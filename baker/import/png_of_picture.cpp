@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "import/look.h"
+#include "baker/import/look.h"
 
 // The library is C of another style: its warnings are not ours to mend.
 #pragma GCC diagnostic push

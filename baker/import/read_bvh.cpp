@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/read_bvh.h"
+#include "baker/import/read_bvh.h"
 
 #include <cctype>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <numbers>
 #include <string>
 
-#include "import/bvh_file.h"
-#include "import/notes.h"
-#include "mesh/error.h"
+#include "baker/import/bvh_file.h"
+#include "baker/import/notes.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "import/source_rig.h"
+#include "baker/import/source_rig.h"
 
 namespace spherechain::baker {
 

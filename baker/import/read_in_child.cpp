@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/read_in_child.h"
+#include "baker/import/read_in_child.h"
 
 #include <poll.h>
 #include <signal.h>
@@ -17,8 +17,8 @@
 #include <new>
 #include <string_view>
 
-#include "import/child_process.h"
-#include "mesh/error.h"
+#include "baker/import/child_process.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {

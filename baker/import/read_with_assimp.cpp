@@ -21,18 +21,18 @@
 #include <sstream>
 #include <string_view>
 
-#include "import/assimp_glb.h"
-#include "import/assimp_look.h"
-#include "import/assimp_scene.h"
-#include "import/choose_meshes.h"
-#include "import/collada_names.h"
-#include "import/fbx_curves.h"
-#include "import/fbx_names.h"
-#include "import/import.h"
-#include "import/named_file.h"
-#include "import/notes.h"
-#include "import/ogre_weights.h"
-#include "mesh/error.h"
+#include "baker/import/assimp_glb.h"
+#include "baker/import/assimp_look.h"
+#include "baker/import/assimp_scene.h"
+#include "baker/import/choose_meshes.h"
+#include "baker/import/collada_names.h"
+#include "baker/import/fbx_curves.h"
+#include "baker/import/fbx_names.h"
+#include "baker/import/import.h"
+#include "baker/import/named_file.h"
+#include "baker/import/notes.h"
+#include "baker/import/ogre_weights.h"
+#include "baker/mesh/error.h"
 #include "spherechain/asset.h"
 
 namespace spherechain::baker {

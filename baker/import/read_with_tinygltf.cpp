@@ -6,11 +6,11 @@
 #include <numeric>
 #include <set>
 
-#include "import/choose_meshes.h"
-#include "import/gltf_clips.h"
-#include "import/gltf_look.h"
-#include "import/gltf_primitive.h"
-#include "import/import.h"
+#include "baker/import/choose_meshes.h"
+#include "baker/import/gltf_clips.h"
+#include "baker/import/gltf_look.h"
+#include "baker/import/gltf_primitive.h"
+#include "baker/import/import.h"
 #include "spherechain/asset.h"
 
 namespace spherechain::baker {

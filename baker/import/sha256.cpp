@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/sha256.h"
+#include "baker/import/sha256.h"
 
 #include <openssl/evp.h>
 
@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "mesh/error.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 

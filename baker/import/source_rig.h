@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/mesh.h"
+#include "baker/mesh/mesh.h"
 
 namespace spherechain::baker {
 

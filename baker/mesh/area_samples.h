@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "mesh/mesh.h"
+#include "baker/mesh/mesh.h"
 
 namespace spherechain::baker {
 

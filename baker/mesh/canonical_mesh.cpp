@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh/canonical_mesh.h"
+#include "baker/mesh/canonical_mesh.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "mesh/decompose.h"
+#include "baker/mesh/decompose.h"
 
 namespace spherechain::baker {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "mesh/mesh.h"
+#include "baker/mesh/mesh.h"
 
 namespace spherechain::baker {
 

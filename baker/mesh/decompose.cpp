@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh/decompose.h"
+#include "baker/mesh/decompose.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>

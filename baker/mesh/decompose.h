@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "mesh/mesh.h"
+#include "baker/mesh/mesh.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh/even_directions.h"
+#include "baker/mesh/even_directions.h"
 
 #include <cmath>
 #include <numbers>

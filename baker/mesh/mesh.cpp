@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh/mesh.h"
+#include "baker/mesh/mesh.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

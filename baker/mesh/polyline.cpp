@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh/polyline.h"
+#include "baker/mesh/polyline.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh/ring.h"
+#include "baker/mesh/ring.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

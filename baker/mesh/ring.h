@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "mesh/mesh.h"
-#include "mesh/surface_query.h"
+#include "baker/mesh/mesh.h"
+#include "baker/mesh/surface_query.h"
 
 namespace spherechain::baker {
 

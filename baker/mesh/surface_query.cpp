@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh/surface_query.h"
+#include "baker/mesh/surface_query.h"
 
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>

@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "mesh/mesh.h"
+#include "baker/mesh/mesh.h"
 
 namespace spherechain::baker {
 

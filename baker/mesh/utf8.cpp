@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh/utf8.h"
+#include "baker/mesh/utf8.h"
 
 namespace spherechain::baker {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "motion/capture.h"
+#include "baker/motion/capture.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
-#include "mesh/decompose.h"
-#include "mesh/error.h"
-#include "motion/clip.h"
+#include "baker/mesh/decompose.h"
+#include "baker/mesh/error.h"
+#include "baker/motion/clip.h"
 
 namespace spherechain::baker {
 namespace {

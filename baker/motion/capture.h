@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "motion/motion.h"
-#include "motion/role_joints.h"
-#include "segment/body_plan.h"
+#include "baker/motion/motion.h"
+#include "baker/motion/role_joints.h"
+#include "baker/segment/body_plan.h"
 
 namespace spherechain::baker {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "motion/carried_motion.h"
+#include "baker/motion/carried_motion.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <unordered_map>
 
-#include "mesh/decompose.h"
-#include "mesh/error.h"
-#include "motion/clip.h"
-#include "motion/frame_times.h"
+#include "baker/mesh/decompose.h"
+#include "baker/mesh/error.h"
+#include "baker/motion/clip.h"
+#include "baker/motion/frame_times.h"
 
 namespace spherechain::baker {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "motion/capture.h"
+#include "baker/motion/capture.h"
 
 namespace spherechain::baker {
 

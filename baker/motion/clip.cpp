@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "motion/clip.h"
+#include "baker/motion/clip.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "motion/frame_times.h"
+#include "baker/motion/frame_times.h"
 
 namespace spherechain::baker {
 namespace {

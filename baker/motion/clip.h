@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "motion/motion.h"
+#include "baker/motion/motion.h"
 
 namespace spherechain::baker {
 

@@ -3,8 +3,8 @@
 #include <map>
 #include <set>
 
-#include "motion/poses.h"
-#include "roles/roles.h"
+#include "baker/motion/poses.h"
+#include "baker/roles/roles.h"
 
 namespace spherechain::baker {
 

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "import/named_file.h"
-#include "mesh/error.h"
-#include "motion/poses.h"
+#include "baker/import/named_file.h"
+#include "baker/mesh/error.h"
+#include "baker/motion/poses.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "motion/poses.h"
+#include "baker/motion/poses.h"
 
 #include <algorithm>
 #include <set>
 
-#include "mesh/decompose.h"
+#include "baker/mesh/decompose.h"
 
 namespace spherechain::baker {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "motion/motion.h"
-#include "rig/rig.h"
-#include "segment/body_plan.h"
+#include "baker/motion/motion.h"
+#include "baker/rig/rig.h"
+#include "baker/segment/body_plan.h"
 
 namespace spherechain::baker {
 

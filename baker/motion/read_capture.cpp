@@ -3,11 +3,11 @@
 #include <numeric>
 #include <optional>
 
-#include "import/choose_meshes.h"
-#include "import/import.h"
-#include "mesh/error.h"
-#include "motion/capture.h"
-#include "roles/roles.h"
+#include "baker/import/choose_meshes.h"
+#include "baker/import/import.h"
+#include "baker/mesh/error.h"
+#include "baker/motion/capture.h"
+#include "baker/roles/roles.h"
 
 namespace spherechain::baker {
 namespace {

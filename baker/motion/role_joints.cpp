@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "motion/role_joints.h"
+#include "baker/motion/role_joints.h"
 
 #include <algorithm>
 #include <array>

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "import/source_rig.h"
-#include "rig/rig.h"
+#include "baker/import/source_rig.h"
+#include "baker/rig/rig.h"
 
 namespace spherechain::baker {
 

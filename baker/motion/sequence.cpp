@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "motion/sequence.h"
+#include "baker/motion/sequence.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <fstream>
 
-#include "import/named_file.h"
-#include "mesh/error.h"
+#include "baker/import/named_file.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "import/import.h"
-#include "motion/motion.h"
+#include "baker/import/import.h"
+#include "baker/motion/motion.h"
 
 namespace spherechain::baker {
 

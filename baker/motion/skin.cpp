@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "motion/motion.h"
+#include "baker/motion/motion.h"
 
 namespace spherechain::baker {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "page/fill_page.h"
+#include "baker/page/fill_page.h"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "mesh/error.h"
-#include "report/json_text.h"
+#include "baker/mesh/error.h"
+#include "baker/report/json_text.h"
 
 namespace spherechain::baker {
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "page/page.h"
+#include "baker/page/page.h"
 
 namespace spherechain::baker {
 

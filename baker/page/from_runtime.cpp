@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "page/from_runtime.h"
+#include "baker/page/from_runtime.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "play/target.h"
+#include "baker/play/target.h"
 
 namespace spherechain::baker {
 namespace {

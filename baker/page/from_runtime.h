@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "import/import.h"
-#include "play/play.h"
-#include "play/player.h"
+#include "baker/import/import.h"
+#include "baker/play/play.h"
+#include "baker/play/player.h"
 
 // All that the page takes from the asset and the runtime; no other file of this folder calls them.
 namespace spherechain::baker {

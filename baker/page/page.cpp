@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "page/page.h"
+#include "baker/page/page.h"
 
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "page/base64.h"
-#include "page/fill_page.h"
-#include "page/from_runtime.h"
-#include "page/page_axes.h"
-#include "page/page_edits.h"
-#include "page/page_look.h"
-#include "page/page_mesh.h"
-#include "page/page_motion.h"
-#include "page/page_penetrations.h"
-#include "page/page_rig.h"
-#include "report/json_text.h"
-#include "report/report.h"
-#include "volumes/volume_json.h"
+#include "baker/page/base64.h"
+#include "baker/page/fill_page.h"
+#include "baker/page/from_runtime.h"
+#include "baker/page/page_axes.h"
+#include "baker/page/page_edits.h"
+#include "baker/page/page_look.h"
+#include "baker/page/page_mesh.h"
+#include "baker/page/page_motion.h"
+#include "baker/page/page_penetrations.h"
+#include "baker/page/page_rig.h"
+#include "baker/report/json_text.h"
+#include "baker/report/report.h"
+#include "baker/volumes/volume_json.h"
 
 namespace spherechain::baker {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "play/play.h"
+#include "baker/play/play.h"
+#include "baker/volumes/colliders.h"
 #include "spherechain/types.h"
-#include "volumes/colliders.h"
 
 namespace spherechain::baker {
 

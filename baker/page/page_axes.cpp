@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "page/page_axes.h"
+#include "baker/page/page_axes.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "page/from_runtime.h"
-#include "report/vec3_json.h"
+#include "baker/page/from_runtime.h"
+#include "baker/report/vec3_json.h"
 
 namespace spherechain::baker {
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "play/play.h"
+#include "baker/play/play.h"
 
 namespace spherechain::baker {
 

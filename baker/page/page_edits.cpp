@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "page/page_edits.h"
+#include "baker/page/page_edits.h"
 
 #include <nlohmann/json.hpp>
 
-#include "edits/region_axes.h"
-#include "report/vec3_json.h"
+#include "baker/edits/region_axes.h"
+#include "baker/report/vec3_json.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "page/page_inputs.h"
+#include "baker/page/page_inputs.h"
 
 #include <nlohmann/json.hpp>
 
-#include "import/json_depth.h"
-#include "mesh/error.h"
-#include "play/asset_file.h"
+#include "baker/import/json_depth.h"
+#include "baker/mesh/error.h"
+#include "baker/play/asset_file.h"
 
 namespace spherechain::baker {
 namespace {

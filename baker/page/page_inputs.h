@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "play/asset_file.h"
+#include "baker/play/asset_file.h"
 
 namespace spherechain::baker {
 

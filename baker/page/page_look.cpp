@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "page/page_look.h"
+#include "baker/page/page_look.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "page/base64.h"
-#include "page/shrink_picture.h"
+#include "baker/page/base64.h"
+#include "baker/page/shrink_picture.h"
 
 namespace spherechain::baker {
 namespace {

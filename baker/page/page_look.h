@@ -3,7 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "import/look.h"
+#include "baker/import/look.h"
 
 namespace spherechain::baker {
 

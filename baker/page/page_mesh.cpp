@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "page/page_mesh.h"
+#include "baker/page/page_mesh.h"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "page/base64.h"
+#include "baker/page/base64.h"
 
 namespace spherechain::baker {
 namespace {

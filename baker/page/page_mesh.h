@@ -4,8 +4,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "page/from_runtime.h"
-#include "play/play.h"
+#include "baker/page/from_runtime.h"
+#include "baker/play/play.h"
 
 namespace spherechain::baker {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "page/page_motion.h"
+#include "baker/page/page_motion.h"
 
 #include <nlohmann/json.hpp>
 
-#include "page/base64.h"
+#include "baker/page/base64.h"
 
 namespace spherechain::baker {
 namespace {

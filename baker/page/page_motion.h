@@ -4,9 +4,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "import/import.h"
-#include "motion/motion.h"
-#include "segment/body_plan.h"
+#include "baker/import/import.h"
+#include "baker/motion/motion.h"
+#include "baker/segment/body_plan.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "page/page_of_two.h"
+#include "baker/page/page_of_two.h"
 
 #include <fmt/format.h>
 
@@ -9,19 +9,19 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "mesh/error.h"
-#include "page/base64.h"
-#include "page/fill_page.h"
-#include "page/from_runtime.h"
-#include "page/page_axes.h"
-#include "page/page_mesh.h"
-#include "page/page_motion.h"
-#include "page/page_penetrations.h"
-#include "play/skin_player.h"
-#include "play/target.h"
-#include "report/json_text.h"
-#include "report/report.h"
-#include "report/vec3_json.h"
+#include "baker/mesh/error.h"
+#include "baker/page/base64.h"
+#include "baker/page/fill_page.h"
+#include "baker/page/from_runtime.h"
+#include "baker/page/page_axes.h"
+#include "baker/page/page_mesh.h"
+#include "baker/page/page_motion.h"
+#include "baker/page/page_penetrations.h"
+#include "baker/play/skin_player.h"
+#include "baker/play/target.h"
+#include "baker/report/json_text.h"
+#include "baker/report/report.h"
+#include "baker/report/vec3_json.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 
-#include "page/page.h"
-#include "play/play.h"
+#include "baker/page/page.h"
+#include "baker/play/play.h"
 
 namespace spherechain::baker {
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "page/base64.h"
+#include "baker/page/base64.h"
 #include "spherechain/contacts.h"
 
 namespace spherechain::baker {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "page/page_rig.h"
+#include "baker/page/page_rig.h"
 
 #include <nlohmann/json.hpp>
 
-#include "page/page_axes.h"
-#include "play/posable.h"
-#include "report/vec3_json.h"
+#include "baker/page/page_axes.h"
+#include "baker/play/posable.h"
+#include "baker/report/vec3_json.h"
 
 namespace spherechain::baker {
 

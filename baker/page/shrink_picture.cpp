@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "page/shrink_picture.h"
+#include "baker/page/shrink_picture.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
-#include "import/read_in_child.h"
-#include "page/base64.h"
+#include "baker/import/read_in_child.h"
+#include "baker/page/base64.h"
 
 // The library is C of another style: its warnings are not ours to mend.
 #pragma GCC diagnostic push

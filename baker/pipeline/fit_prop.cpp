@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/fit_prop.h"
+#include "baker/pipeline/fit_prop.h"
 
 #include <algorithm>
 
-#include "segment/by_bones.h"
+#include "baker/segment/by_bones.h"
 
 namespace spherechain::baker {
 namespace {

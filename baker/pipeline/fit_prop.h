@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "pipeline/pipeline.h"
+#include "baker/pipeline/pipeline.h"
 
 namespace spherechain::baker {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One character through all stages.
-#include "pipeline/pipeline.h"
+#include "baker/pipeline/pipeline.h"
 
 #include <fmt/format.h>
 
@@ -8,19 +8,19 @@
 #include <array>
 #include <chrono>
 
-#include "calibrate/calibrate.h"
-#include "edits/hidden_contacts.h"
-#include "edits/ignore_parts.h"
-#include "import/notes.h"
-#include "mesh/error.h"
-#include "pipeline/fit_prop.h"
-#include "pipeline/segment_wraps.h"
-#include "segment/by_bones.h"
-#include "segment/by_rig.h"
-#include "segment/by_shape.h"
-#include "wrap/repair_body.h"
-#include "wrap/wrap_skin.h"
-#include "write/write.h"
+#include "baker/calibrate/calibrate.h"
+#include "baker/edits/hidden_contacts.h"
+#include "baker/edits/ignore_parts.h"
+#include "baker/import/notes.h"
+#include "baker/mesh/error.h"
+#include "baker/pipeline/fit_prop.h"
+#include "baker/pipeline/segment_wraps.h"
+#include "baker/segment/by_bones.h"
+#include "baker/segment/by_rig.h"
+#include "baker/segment/by_shape.h"
+#include "baker/wrap/repair_body.h"
+#include "baker/wrap/wrap_skin.h"
+#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

@@ -8,22 +8,22 @@
 #include <string>
 #include <vector>
 
-#include "bind/bind.h"
-#include "bind/bind_bones.h"
-#include "bind/bind_moments.h"
-#include "bind/body_parts.h"
-#include "bind/fit_quality.h"
-#include "chains/chains.h"
-#include "clusters/clusters.h"
-#include "edits/edit_spheres.h"
-#include "edits/edits.h"
-#include "fit/fit.h"
-#include "import/import.h"
-#include "mesh/attempt.h"
-#include "rig/rig.h"
-#include "roles/roles.h"
-#include "segment/segment.h"
-#include "wrap/closing_report.h"
+#include "baker/bind/bind.h"
+#include "baker/bind/bind_bones.h"
+#include "baker/bind/bind_moments.h"
+#include "baker/bind/body_parts.h"
+#include "baker/bind/fit_quality.h"
+#include "baker/chains/chains.h"
+#include "baker/clusters/clusters.h"
+#include "baker/edits/edit_spheres.h"
+#include "baker/edits/edits.h"
+#include "baker/fit/fit.h"
+#include "baker/import/import.h"
+#include "baker/mesh/attempt.h"
+#include "baker/rig/rig.h"
+#include "baker/roles/roles.h"
+#include "baker/segment/segment.h"
+#include "baker/wrap/closing_report.h"
 
 namespace spherechain::baker {
 

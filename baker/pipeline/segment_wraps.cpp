@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/segment_wraps.h"
+#include "baker/pipeline/segment_wraps.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
-#include "segment/by_shape.h"
-#include "wrap/wrap_skin.h"
+#include "baker/segment/by_shape.h"
+#include "baker/wrap/wrap_skin.h"
 
 namespace spherechain::baker {
 namespace {

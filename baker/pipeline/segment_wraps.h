@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "mesh/attempt.h"
-#include "segment/segment.h"
-#include "wrap/closing_report.h"
+#include "baker/mesh/attempt.h"
+#include "baker/segment/segment.h"
+#include "baker/wrap/closing_report.h"
 
 namespace spherechain::baker {
 

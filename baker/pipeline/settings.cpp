@@ -4,8 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "mesh/error.h"
-#include "pipeline/pipeline.h"
+#include "baker/mesh/error.h"
+#include "baker/pipeline/pipeline.h"
 
 namespace spherechain::baker {
 namespace {

@@ -2,7 +2,7 @@
 // Which of its targets a bake misses.
 #include <fmt/format.h>
 
-#include "pipeline/pipeline.h"
+#include "baker/pipeline/pipeline.h"
 
 namespace spherechain::baker {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "play/asset_file.h"
+#include "baker/play/asset_file.h"
 
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
-#include "import/import.h"
-#include "mesh/error.h"
-#include "skin/scene_setup.h"
+#include "baker/import/import.h"
+#include "baker/mesh/error.h"
+#include "runtime/src/clusters/set_up.h"
 
 namespace spherechain::baker {
 

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "asset/asset_view.h"
-#include "body/model.h"
-#include "skin/skin_table.h"
+#include "runtime/src/asset/asset_view.h"
+#include "runtime/src/bodies/model.h"
+#include "runtime/src/skin/skin_table.h"
 #include "spherechain/model.h"
 
 namespace spherechain::baker {

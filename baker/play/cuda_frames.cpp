@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "play/cuda_frames.h"
+#include "baker/play/cuda_frames.h"
 
-#include "mesh/error.h"
+#include "baker/mesh/error.h"
 
 #if defined(SPHERECHAIN_CUDA)
 #include "spherechain/cuda.h"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "play/play.h"
+#include "baker/play/play.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "play/hidden_joints.h"
+#include "baker/play/hidden_joints.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "import/named_file.h"
+#include "baker/import/named_file.h"
 
 namespace spherechain::baker {
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "play/play.h"
+#include "baker/play/play.h"
 
 namespace spherechain::baker {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "play/motion_frames.h"
+#include "baker/play/motion_frames.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "motion/frame_times.h"
+#include "baker/motion/frame_times.h"
 
 namespace spherechain::baker {
 namespace {

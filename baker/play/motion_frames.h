@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "motion/clip.h"
+#include "baker/motion/clip.h"
 
 namespace spherechain::baker {
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "play/play.h"
+#include "baker/play/play.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 
-#include "mesh/error.h"
-#include "motion/capture.h"
-#include "motion/carried_motion.h"
-#include "motion/clip.h"
-#include "motion/frame_times.h"
-#include "motion/sequence.h"
-#include "pipeline/pipeline.h"
+#include "baker/mesh/error.h"
+#include "baker/motion/capture.h"
+#include "baker/motion/carried_motion.h"
+#include "baker/motion/clip.h"
+#include "baker/motion/frame_times.h"
+#include "baker/motion/sequence.h"
+#include "baker/pipeline/pipeline.h"
 
 namespace spherechain::baker {
 namespace {

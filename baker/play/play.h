@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "bind/body_parts.h"
-#include "import/import.h"
-#include "motion/motion.h"
-#include "motion/poses.h"
-#include "play/asset_file.h"
-#include "play/motion_frames.h"
-#include "rig/rig.h"
-#include "roles/roles.h"
-#include "segment/segment.h"
+#include "baker/bind/body_parts.h"
+#include "baker/import/import.h"
+#include "baker/motion/motion.h"
+#include "baker/motion/poses.h"
+#include "baker/play/asset_file.h"
+#include "baker/play/motion_frames.h"
+#include "baker/rig/rig.h"
+#include "baker/roles/roles.h"
+#include "baker/segment/segment.h"
 
 namespace spherechain::baker {
 

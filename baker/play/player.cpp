@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "play/player.h"
+#include "baker/play/player.h"
 
 #include <algorithm>
 #include <chrono>
 
-#include "pairs/detect_job.h"
-#include "refit/refit_job.h"
+#include "runtime/src/pairs/detect_job.h"
+#include "runtime/src/refit/refit_job.h"
 
 namespace spherechain::baker {
 namespace {

@@ -5,8 +5,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "play/asset_file.h"
-#include "play/skin_player.h"
+#include "baker/play/asset_file.h"
+#include "baker/play/skin_player.h"
 
 namespace spherechain::baker {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "play/posable.h"
+#include "baker/play/posable.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "roles/roles.h"
+#include "baker/roles/roles.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "play/play.h"
+#include "baker/play/play.h"
 
 namespace spherechain::baker {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "play/skin_player.h"
+#include "baker/play/skin_player.h"
 
 #include <algorithm>
 
-#include "play/play.h"
+#include "baker/play/play.h"
 
 namespace spherechain::baker {
 

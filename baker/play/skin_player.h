@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "motion/motion.h"
-#include "play/asset_file.h"
+#include "baker/motion/motion.h"
+#include "baker/play/asset_file.h"
 #include "spherechain/body.h"
 
 namespace spherechain::baker {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "play/steps.h"
+#include "baker/play/steps.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
 
-#include "play/asset_file.h"
-#include "play/skin_player.h"
-#include "step/step_job.h"
+#include "baker/play/asset_file.h"
+#include "baker/play/skin_player.h"
+#include "runtime/src/step/step_job.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "play/target.h"
+#include "baker/play/target.h"
 
 #include <cstdlib>
 
-#include "mesh/error.h"
-#include "simd/simd.h"
+#include "baker/mesh/error.h"
+#include "runtime/src/simd/simd.h"
 
 namespace spherechain::baker {
 

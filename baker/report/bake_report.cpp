@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "report/json_text.h"
-#include "report/report.h"
-#include "report/vec3_json.h"
-#include "write/version.h"
+#include "baker/report/json_text.h"
+#include "baker/report/report.h"
+#include "baker/report/vec3_json.h"
+#include "baker/write/version.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,9 +4,9 @@
 #include <bit>
 #include <nlohmann/json.hpp>
 
-#include "report/json_text.h"
-#include "report/parts.h"
-#include "report/report.h"
+#include "baker/report/json_text.h"
+#include "baker/report/parts.h"
+#include "baker/report/report.h"
 
 namespace spherechain::baker {
 namespace {

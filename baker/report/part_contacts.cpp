@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/part_contacts.h"
+#include "baker/report/part_contacts.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "mesh/error.h"
-#include "play/skin_player.h"
-#include "report/number_json.h"
+#include "baker/mesh/error.h"
+#include "baker/play/skin_player.h"
+#include "baker/report/number_json.h"
 
 namespace spherechain::baker {
 namespace {

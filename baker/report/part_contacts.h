@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "bind/body_parts.h"
-#include "play/play.h"
+#include "baker/bind/body_parts.h"
+#include "baker/play/play.h"
 #include "spherechain/contacts.h"
 
 namespace spherechain::baker {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/parts.h"
+#include "baker/report/parts.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "play/play.h"
+#include "baker/play/play.h"
 
 namespace spherechain::baker {
 namespace {

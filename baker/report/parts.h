@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "bind/body_parts.h"
-#include "play/asset_file.h"
+#include "baker/bind/body_parts.h"
+#include "baker/play/asset_file.h"
 
 namespace spherechain::baker {
 

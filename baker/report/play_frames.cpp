@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/play_frames.h"
+#include "baker/report/play_frames.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "report/json_text.h"
-#include "report/number_json.h"
+#include "baker/report/json_text.h"
+#include "baker/report/number_json.h"
 
 namespace spherechain::baker {
 

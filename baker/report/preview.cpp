@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/preview.h"
+#include "baker/report/preview.h"
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>
@@ -11,9 +11,9 @@
 #include <numbers>
 #include <sstream>
 
-#include "mesh/error.h"
-#include "segment/region_colours.h"
-#include "write/version.h"
+#include "baker/mesh/error.h"
+#include "baker/segment/region_colours.h"
+#include "baker/write/version.h"
 
 namespace spherechain::baker {
 namespace {

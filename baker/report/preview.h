@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "pipeline/pipeline.h"
+#include "baker/pipeline/pipeline.h"
 
 namespace spherechain::baker {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/pipeline.h"
-#include "play/asset_file.h"
+#include "baker/pipeline/pipeline.h"
+#include "baker/play/asset_file.h"
 
 namespace spherechain::baker {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "report/json_text.h"
-#include "report/report.h"
+#include "baker/report/json_text.h"
+#include "baker/report/report.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/validation.h"
+#include "baker/report/validation.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "report/json_text.h"
-#include "report/number_json.h"
-#include "write/version.h"
+#include "baker/report/json_text.h"
+#include "baker/report/number_json.h"
+#include "baker/write/version.h"
 
 namespace spherechain::baker {
 namespace {

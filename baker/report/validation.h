@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "truth/validate.h"
+#include "baker/truth/validate.h"
 
 namespace spherechain::baker {
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "mesh/mesh.h"
+#include "baker/mesh/mesh.h"
 
 namespace spherechain::baker {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/surface_query.h"
-#include "rig/rig.h"
+#include "baker/mesh/surface_query.h"
+#include "baker/rig/rig.h"
 
 namespace spherechain::baker {
 namespace {

@@ -2,8 +2,8 @@
 #include <Eigen/Geometry>
 #include <limits>
 
-#include "mesh/surface_query.h"
-#include "rig/rig.h"
+#include "baker/mesh/surface_query.h"
+#include "baker/rig/rig.h"
 
 namespace spherechain::baker {
 namespace {

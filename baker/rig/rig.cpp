@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "rig/rig.h"
+#include "baker/rig/rig.h"
 
 #include <algorithm>
 
-#include "mesh/surface_query.h"
+#include "baker/mesh/surface_query.h"
 
 namespace spherechain::baker {
 

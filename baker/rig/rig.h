@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "import/import.h"
-#include "segment/segment.h"
+#include "baker/import/import.h"
+#include "baker/segment/segment.h"
 
 namespace spherechain::baker {
 

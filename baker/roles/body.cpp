@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "roles/body.h"
+#include "baker/roles/body.h"
 
 #include <algorithm>
 #include <array>

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "roles/limb_path.h"
-#include "roles/roles.h"
+#include "baker/roles/limb_path.h"
+#include "baker/roles/roles.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "roles/joint_parts.h"
+#include "baker/roles/joint_parts.h"
 
 #include <algorithm>
 #include <string_view>

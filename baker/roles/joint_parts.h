@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "roles/names.h"
-#include "roles/skeleton.h"
+#include "baker/roles/names.h"
+#include "baker/roles/skeleton.h"
 
 namespace spherechain::baker {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "roles/letters.h"
+#include "baker/roles/letters.h"
 
 #include <optional>
 
-#include "mesh/utf8.h"
+#include "baker/mesh/utf8.h"
 
 namespace spherechain::baker {
 namespace {

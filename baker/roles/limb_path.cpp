@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "roles/limb_path.h"
+#include "baker/roles/limb_path.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "roles/names.h"
+#include "baker/roles/names.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include <unordered_set>
 #include <utility>
 
-#include "roles/letters.h"
-#include "roles/words.h"
+#include "baker/roles/letters.h"
+#include "baker/roles/words.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <nlohmann/json.hpp>
 
-#include "mesh/error.h"
-#include "roles/names.h"
-#include "roles/roles.h"
+#include "baker/mesh/error.h"
+#include "baker/roles/names.h"
+#include "baker/roles/roles.h"
 
 namespace spherechain::baker {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "roles/roles.h"
+#include "baker/roles/roles.h"
 
 #include <algorithm>
 #include <array>
 
-#include "mesh/error.h"
-#include "roles/body.h"
-#include "roles/joint_parts.h"
-#include "roles/shape.h"
+#include "baker/mesh/error.h"
+#include "baker/roles/body.h"
+#include "baker/roles/joint_parts.h"
+#include "baker/roles/shape.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "roles/shape.h"
+#include "baker/roles/shape.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "roles/limb_path.h"
+#include "baker/roles/limb_path.h"
 
 namespace spherechain::baker {
 namespace {

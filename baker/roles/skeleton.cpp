@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "roles/skeleton.h"
+#include "baker/roles/skeleton.h"
 
 #include <algorithm>
 
-#include "import/pivots.h"
-#include "roles/roles.h"
+#include "baker/import/pivots.h"
+#include "baker/roles/roles.h"
 
 namespace spherechain::baker {
 

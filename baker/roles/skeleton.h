@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "import/source_rig.h"
+#include "baker/import/source_rig.h"
 
 namespace spherechain::baker {
 

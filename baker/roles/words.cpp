@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "roles/words.h"
+#include "baker/roles/words.h"
 
 #include <algorithm>
 #include <unordered_map>
 #include <vector>
 
-#include "roles/letters.h"
+#include "baker/roles/letters.h"
 
 namespace spherechain::baker {
 namespace {

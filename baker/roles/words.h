@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "roles/names.h"
+#include "baker/roles/names.h"
 
 namespace spherechain::baker {
 

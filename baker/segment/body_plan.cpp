@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segment/body_plan.h"
+#include "baker/segment/body_plan.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/decompose.h"
-#include "segment/branches.h"
+#include "baker/mesh/decompose.h"
+#include "baker/segment/branches.h"
 
 namespace spherechain::baker {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "mesh/attempt.h"
-#include "mesh/polyline.h"
-#include "segment/curve_skeleton.h"
+#include "baker/mesh/attempt.h"
+#include "baker/mesh/polyline.h"
+#include "baker/segment/curve_skeleton.h"
 
 namespace spherechain::baker {
 

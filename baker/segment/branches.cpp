@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segment/branches.h"
+#include "baker/segment/branches.h"
 
 #include <algorithm>
 #include <limits>

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "mesh/polyline.h"
-#include "segment/curve_skeleton.h"
+#include "baker/mesh/polyline.h"
+#include "baker/segment/curve_skeleton.h"
 
 namespace spherechain::baker {
 

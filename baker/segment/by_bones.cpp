@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segment/by_bones.h"
+#include "baker/segment/by_bones.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <numeric>
 #include <set>
 
-#include "roles/skeleton.h"
-#include "segment/part_tree.h"
-#include "segment/stature.h"
+#include "baker/roles/skeleton.h"
+#include "baker/segment/part_tree.h"
+#include "baker/segment/stature.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "roles/roles.h"
-#include "segment/segment.h"
+#include "baker/roles/roles.h"
+#include "baker/segment/segment.h"
 
 namespace spherechain::baker {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segment/by_rig.h"
+#include "baker/segment/by_rig.h"
 
 #include <algorithm>
 
-#include "mesh/surface_query.h"
-#include "segment/body_plan.h"
-#include "segment/from_skin.h"
-#include "segment/islands.h"
-#include "segment/stature.h"
-#include "segment/trunk.h"
+#include "baker/mesh/surface_query.h"
+#include "baker/segment/body_plan.h"
+#include "baker/segment/from_skin.h"
+#include "baker/segment/islands.h"
+#include "baker/segment/stature.h"
+#include "baker/segment/trunk.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "mesh/attempt.h"
-#include "roles/roles.h"
-#include "segment/segment.h"
+#include "baker/mesh/attempt.h"
+#include "baker/roles/roles.h"
+#include "baker/segment/segment.h"
 
 namespace spherechain::baker {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segment/by_shape.h"
+#include "baker/segment/by_shape.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "mesh/surface_query.h"
-#include "segment/islands.h"
-#include "segment/label_skin.h"
-#include "segment/limb_trace.h"
-#include "segment/limbed_plan.h"
-#include "segment/shortest_loop.h"
-#include "segment/trunk.h"
+#include "baker/mesh/surface_query.h"
+#include "baker/segment/islands.h"
+#include "baker/segment/label_skin.h"
+#include "baker/segment/limb_trace.h"
+#include "baker/segment/limbed_plan.h"
+#include "baker/segment/shortest_loop.h"
+#include "baker/segment/trunk.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "mesh/attempt.h"
-#include "segment/segment.h"
+#include "baker/mesh/attempt.h"
+#include "baker/segment/segment.h"
 
 namespace spherechain::baker {
 

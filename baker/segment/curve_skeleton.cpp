@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segment/curve_skeleton.h"
+#include "baker/segment/curve_skeleton.h"
 
-#include "segment/skeleton_arena.h"
+#include "baker/segment/skeleton_arena.h"
 
 // CGAL collapses edges in the order of their addresses. Out of the arena addresses follow the order of creation, so
 // that a mesh has one skeleton, not one a process. CGAL's containers ask this macro for their allocator; it must come
@@ -15,7 +15,7 @@
 
 #include <cmath>
 
-#include "mesh/canonical_mesh.h"
+#include "baker/mesh/canonical_mesh.h"
 
 namespace spherechain::baker {
 namespace {

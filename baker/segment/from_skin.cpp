@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segment/from_skin.h"
+#include "baker/segment/from_skin.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "mesh/ring.h"
-#include "mesh/surface_query.h"
-#include "segment/islands.h"
+#include "baker/mesh/ring.h"
+#include "baker/mesh/surface_query.h"
+#include "baker/segment/islands.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "import/import.h"
-#include "mesh/polyline.h"
-#include "roles/roles.h"
+#include "baker/import/import.h"
+#include "baker/mesh/polyline.h"
+#include "baker/roles/roles.h"
 
 namespace spherechain::baker {
 

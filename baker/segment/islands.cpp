@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segment/islands.h"
+#include "baker/segment/islands.h"
 
 namespace spherechain::baker {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segment/label_skin.h"
+#include "baker/segment/label_skin.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "segment/islands.h"
+#include "baker/segment/islands.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "import/import.h"
-#include "mesh/surface_query.h"
+#include "baker/import/import.h"
+#include "baker/mesh/surface_query.h"
 
 namespace spherechain::baker {
 

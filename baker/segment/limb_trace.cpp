@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segment/limb_trace.h"
+#include "baker/segment/limb_trace.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "mesh/ring.h"
+#include "baker/mesh/ring.h"
 
 namespace spherechain::baker {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "mesh/attempt.h"
-#include "mesh/polyline.h"
-#include "mesh/surface_query.h"
-#include "segment/body_plan.h"
+#include "baker/mesh/attempt.h"
+#include "baker/mesh/polyline.h"
+#include "baker/mesh/surface_query.h"
+#include "baker/segment/body_plan.h"
 
 namespace spherechain::baker {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segment/limbed_plan.h"
+#include "baker/segment/limbed_plan.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "mesh/decompose.h"
-#include "mesh/surface_query.h"
-#include "segment/branches.h"
+#include "baker/mesh/decompose.h"
+#include "baker/mesh/surface_query.h"
+#include "baker/segment/branches.h"
 
 namespace spherechain::baker {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "segment/body_plan.h"
+#include "baker/segment/body_plan.h"
 
 namespace spherechain::baker {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segment/part_tree.h"
+#include "baker/segment/part_tree.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
-#include "mesh/decompose.h"
+#include "baker/mesh/decompose.h"
 
 namespace spherechain::baker {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "import/import.h"
+#include "baker/import/import.h"
 
 namespace spherechain::baker {
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "segment/segment.h"
+#include "baker/segment/segment.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segment/segment.h"
+#include "baker/segment/segment.h"
 
 #include <algorithm>
 

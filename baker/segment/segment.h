@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "import/import.h"
-#include "mesh/polyline.h"
-#include "roles/roles.h"
-#include "segment/body_plan.h"
-#include "segment/limb_trace.h"
+#include "baker/import/import.h"
+#include "baker/mesh/polyline.h"
+#include "baker/roles/roles.h"
+#include "baker/segment/body_plan.h"
+#include "baker/segment/limb_trace.h"
 
 namespace spherechain::baker {
 

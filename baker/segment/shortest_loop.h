@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/mesh.h"
+#include "baker/mesh/mesh.h"
 
 namespace spherechain::baker {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segment/stature.h"
+#include "baker/segment/stature.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "import/source_rig.h"
-#include "segment/part_tree.h"
+#include "baker/import/source_rig.h"
+#include "baker/segment/part_tree.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "import/import.h"
-#include "roles/roles.h"
+#include "baker/import/import.h"
+#include "baker/roles/roles.h"
 
 namespace spherechain::baker {
 

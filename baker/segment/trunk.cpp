@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segment/trunk.h"
+#include "baker/segment/trunk.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "mesh/ring.h"
+#include "baker/mesh/ring.h"
 
 namespace spherechain::baker {
 

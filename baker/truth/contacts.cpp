@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "truth/contacts.h"
+#include "baker/truth/contacts.h"
 
 #include <algorithm>
 
-#include "play/skin_player.h"
-#include "skin/skin_inputs.h"
+#include "baker/play/skin_player.h"
+#include "runtime/src/skin/skin_inputs.h"
 
 namespace spherechain::baker {
 namespace {

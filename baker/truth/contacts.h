@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "import/import.h"
-#include "motion/motion.h"
-#include "play/asset_file.h"
+#include "baker/import/import.h"
+#include "baker/motion/motion.h"
+#include "baker/play/asset_file.h"
 #include "spherechain/contacts.h"
 #include "spherechain/types.h"
 

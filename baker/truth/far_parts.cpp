@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "truth/far_parts.h"
+#include "baker/truth/far_parts.h"
 
-#include "truth/intersections.h"
+#include "baker/truth/intersections.h"
 
 namespace spherechain::baker {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "play/play.h"
-#include "truth/surface.h"
+#include "baker/play/play.h"
+#include "baker/truth/surface.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "truth/groups.h"
+#include "baker/truth/groups.h"
 
 #include <algorithm>
 

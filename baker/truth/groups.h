@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "play/asset_file.h"
-#include "truth/truth.h"
+#include "baker/play/asset_file.h"
+#include "baker/truth/truth.h"
 
 namespace spherechain::baker {
 

@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "truth/surface.h"
+#include "baker/truth/surface.h"
 
 namespace spherechain::baker {
 

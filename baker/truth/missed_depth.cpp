@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "truth/missed_depth.h"
+#include "baker/truth/missed_depth.h"
 
 #include <algorithm>
 
-#include "play/skin_player.h"
+#include "baker/play/skin_player.h"
 
 namespace spherechain::baker {
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <vector>
 
+#include "baker/truth/truth.h"
 #include "spherechain/contacts.h"
-#include "truth/truth.h"
 
 namespace spherechain::baker {
 

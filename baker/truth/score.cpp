@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "truth/score.h"
+#include "baker/truth/score.h"
 
 #include <algorithm>
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "truth/truth.h"
+#include "baker/truth/truth.h"
 
 namespace spherechain::baker {
 

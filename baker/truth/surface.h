@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "import/import.h"
-#include "play/asset_file.h"
+#include "baker/import/import.h"
+#include "baker/play/asset_file.h"
 #include "spherechain/types.h"
 
 namespace spherechain::baker {

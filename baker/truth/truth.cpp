@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "truth/truth.h"
+#include "baker/truth/truth.h"
 
 #include <algorithm>
 #include <map>

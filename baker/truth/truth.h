@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
+#include "baker/truth/intersections.h"
 #include "spherechain/types.h"
-#include "truth/intersections.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "truth/truth_cache.h"
+#include "baker/truth/truth_cache.h"
 
 #include <cstdlib>
 #include <cstring>
@@ -8,8 +8,8 @@
 #include <optional>
 #include <string_view>
 
-#include "import/sha256.h"
-#include "write/temporary.h"
+#include "baker/import/sha256.h"
+#include "baker/write/temporary.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "truth/intersections.h"
+#include "baker/truth/intersections.h"
 
 namespace spherechain::baker {
 

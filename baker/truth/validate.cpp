@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "truth/validate.h"
+#include "baker/truth/validate.h"
 
 #include <tbb/parallel_for.h>
 
@@ -10,11 +10,11 @@
 #include <optional>
 #include <set>
 
-#include "mesh/error.h"
-#include "play/player.h"
-#include "truth/far_parts.h"
-#include "truth/missed_depth.h"
-#include "truth/truth_cache.h"
+#include "baker/mesh/error.h"
+#include "baker/play/player.h"
+#include "baker/truth/far_parts.h"
+#include "baker/truth/missed_depth.h"
+#include "baker/truth/truth_cache.h"
 
 namespace spherechain::baker {
 namespace {

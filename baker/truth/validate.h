@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
-#include "play/play.h"
-#include "play/player.h"
-#include "truth/contacts.h"
-#include "truth/far_parts.h"
-#include "truth/groups.h"
-#include "truth/score.h"
+#include "baker/play/play.h"
+#include "baker/play/player.h"
+#include "baker/truth/contacts.h"
+#include "baker/truth/far_parts.h"
+#include "baker/truth/groups.h"
+#include "baker/truth/score.h"
 
 namespace spherechain::baker {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "volumes/bodies.h"
+#include "baker/volumes/bodies.h"
 
 #include <algorithm>
 #include <map>
 #include <numeric>
 
-#include "bind/body_parts.h"
-#include "mesh/area_samples.h"
-#include "play/play.h"
+#include "baker/bind/body_parts.h"
+#include "baker/mesh/area_samples.h"
+#include "baker/play/play.h"
 
 namespace spherechain::baker {
 namespace {

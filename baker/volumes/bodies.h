@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "play/asset_file.h"
-#include "volumes/colliders.h"
+#include "baker/play/asset_file.h"
+#include "baker/volumes/colliders.h"
 
 namespace spherechain::baker {
 

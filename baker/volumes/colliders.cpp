@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "volumes/colliders.h"
+#include "baker/volumes/colliders.h"
 
 #include <algorithm>
 
-#include "mesh/decompose.h"
+#include "baker/mesh/decompose.h"
 
 namespace spherechain::baker {
 namespace {

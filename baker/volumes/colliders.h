@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "motion/motion.h"
-#include "play/asset_file.h"
-#include "volumes/volume.h"
+#include "baker/motion/motion.h"
+#include "baker/play/asset_file.h"
+#include "baker/volumes/volume.h"
 
 // A character as rigid bodies, the source of every export.
 namespace spherechain::baker {

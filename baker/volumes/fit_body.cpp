@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "volumes/fit_body.h"
+#include "baker/volumes/fit_body.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "volumes/fit_one.h"
+#include "baker/volumes/fit_one.h"
 
 namespace spherechain::baker {
 

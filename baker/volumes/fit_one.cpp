@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "volumes/fit_one.h"
+#include "baker/volumes/fit_one.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/decompose.h"
+#include "baker/mesh/decompose.h"
 
 namespace spherechain::baker {
 namespace {

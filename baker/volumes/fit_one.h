@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "volumes/volume.h"
+#include "baker/volumes/volume.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "volumes/fit_volumes.h"
+#include "baker/volumes/fit_volumes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <map>
 #include <optional>
 
-#include "volumes/bodies.h"
-#include "volumes/fit_body.h"
+#include "baker/volumes/bodies.h"
+#include "baker/volumes/fit_body.h"
 
 namespace spherechain::baker {
 namespace {

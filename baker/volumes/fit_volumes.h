@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "play/asset_file.h"
-#include "volumes/colliders.h"
-#include "volumes/fit_one.h"
+#include "baker/play/asset_file.h"
+#include "baker/volumes/colliders.h"
+#include "baker/volumes/fit_one.h"
 
 namespace spherechain::baker {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "volumes/measure.h"
+#include "baker/volumes/measure.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "volumes/bodies.h"
+#include "baker/volumes/bodies.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "play/play.h"
-#include "volumes/colliders.h"
+#include "baker/play/play.h"
+#include "baker/volumes/colliders.h"
 
 namespace spherechain::baker {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "volumes/volume.h"
+#include "baker/volumes/volume.h"
 
 // The algorithm of Gilbert, Johnson and Keerthi: two convex solids share a point where the differences of their points
 // hold the origin. A simplex of such differences walks towards it.

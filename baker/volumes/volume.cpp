@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "volumes/volume.h"
+#include "baker/volumes/volume.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "mesh/decompose.h"
+#include "baker/mesh/decompose.h"
 
 namespace spherechain::baker {
 namespace {

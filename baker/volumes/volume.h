@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <variant>
 
-#include "mesh/mesh.h"
+#include "baker/mesh/mesh.h"
 
 // The convex solids that physics engines have. Lengths in metres, in the space of the body that holds them.
 namespace spherechain::baker {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "volumes/volume_json.h"
+#include "baker/volumes/volume_json.h"
 
 #include <cstddef>
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "volumes/colliders.h"
+#include "baker/volumes/colliders.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "wrap/alpha_wrap.h"
+#include "baker/wrap/alpha_wrap.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "mesh/canonical_mesh.h"
+#include "baker/mesh/canonical_mesh.h"
 
 namespace spherechain::baker {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "mesh/mesh.h"
+#include "baker/mesh/mesh.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "wrap/close_cracks.h"
+#include "baker/wrap/close_cracks.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "mesh/mesh.h"
+#include "baker/mesh/mesh.h"
 
 namespace spherechain::baker {
 

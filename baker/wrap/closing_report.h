@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "import/import.h"
+#include "baker/import/import.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "wrap/largest_piece.h"
+#include "baker/wrap/largest_piece.h"
 
 #include <algorithm>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "wrap/repair_body.h"
+#include "baker/wrap/repair_body.h"
 
 #include <utility>
 
-#include "wrap/close_cracks.h"
-#include "wrap/largest_piece.h"
-#include "wrap/stitch.h"
-#include "wrap/stopwatch.h"
+#include "baker/wrap/close_cracks.h"
+#include "baker/wrap/largest_piece.h"
+#include "baker/wrap/stitch.h"
+#include "baker/wrap/stopwatch.h"
 
 namespace spherechain::baker {
 namespace {

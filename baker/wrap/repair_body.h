@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "mesh/attempt.h"
-#include "wrap/closing_report.h"
+#include "baker/mesh/attempt.h"
+#include "baker/wrap/closing_report.h"
 
 namespace spherechain::baker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "wrap/stitch.h"
+#include "baker/wrap/stitch.h"
 
 #include <algorithm>
 #include <array>

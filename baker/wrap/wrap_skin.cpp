@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "wrap/wrap_skin.h"
+#include "baker/wrap/wrap_skin.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/surface_query.h"
-#include "wrap/alpha_wrap.h"
-#include "wrap/close_cracks.h"
-#include "wrap/largest_piece.h"
-#include "wrap/repair_body.h"
-#include "wrap/stitch.h"
-#include "wrap/stopwatch.h"
+#include "baker/mesh/surface_query.h"
+#include "baker/wrap/alpha_wrap.h"
+#include "baker/wrap/close_cracks.h"
+#include "baker/wrap/largest_piece.h"
+#include "baker/wrap/repair_body.h"
+#include "baker/wrap/stitch.h"
+#include "baker/wrap/stopwatch.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "mesh/attempt.h"
-#include "wrap/closing_report.h"
+#include "baker/mesh/attempt.h"
+#include "baker/wrap/closing_report.h"
 
 namespace spherechain::baker {
 

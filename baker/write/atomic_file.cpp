@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "write/atomic_file.h"
+#include "baker/write/atomic_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -8,8 +8,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "mesh/error.h"
-#include "write/write.h"
+#include "baker/mesh/error.h"
+#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "write/temporary.h"
+#include "baker/write/temporary.h"
 
 namespace spherechain::baker {
 

@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "write/own_file.h"
-#include "write/version.h"
+#include "baker/write/own_file.h"
+#include "baker/write/version.h"
 
 namespace spherechain::baker {
 

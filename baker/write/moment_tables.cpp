@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "write/moment_tables.h"
+#include "baker/write/moment_tables.h"
 
 #include <array>
 
-#include "asset/moment_tables.h"
-#include "write/schema_values.h"
+#include "baker/write/schema_values.h"
+#include "runtime/src/asset/moment_tables.h"
 
 namespace spherechain::baker {
 namespace {

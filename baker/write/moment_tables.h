@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "bind/bind_bones.h"
-#include "bind/bind_moments.h"
+#include "baker/bind/bind_bones.h"
+#include "baker/bind/bind_moments.h"
 #include "sphere_chains_generated.h"
 
 namespace spherechain::baker {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "write/own_file.h"
+#include "baker/write/own_file.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "write/write.h"
+#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

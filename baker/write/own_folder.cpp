@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "write/own_folder.h"
+#include "baker/write/own_folder.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -9,11 +9,11 @@
 #include <cstring>
 #include <fstream>
 
-#include "import/sha256.h"
-#include "mesh/error.h"
-#include "write/leftovers.h"
-#include "write/temporary.h"
-#include "write/write.h"
+#include "baker/import/sha256.h"
+#include "baker/mesh/error.h"
+#include "baker/write/leftovers.h"
+#include "baker/write/temporary.h"
+#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

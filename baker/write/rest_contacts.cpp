@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "write/rest_contacts.h"
+#include "baker/write/rest_contacts.h"
 
-#include "mesh/error.h"
+#include "baker/mesh/error.h"
 #include "spherechain/body.h"
 
 namespace spherechain::baker {

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "mesh/mesh.h"
+#include "baker/mesh/mesh.h"
 #include "sphere_chains_generated.h"
 
 namespace spherechain::baker {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
-#include "asset/asset_view.h"
-#include "import/sha256.h"
-#include "mesh/error.h"
+#include "baker/import/sha256.h"
+#include "baker/mesh/error.h"
+#include "baker/write/moment_tables.h"
+#include "baker/write/rest_contacts.h"
+#include "baker/write/schema_values.h"
+#include "baker/write/skin_packing.h"
+#include "baker/write/version.h"
+#include "baker/write/write.h"
+#include "runtime/src/asset/asset_view.h"
 #include "sphere_chains_generated.h"
-#include "write/moment_tables.h"
-#include "write/rest_contacts.h"
-#include "write/schema_values.h"
-#include "write/skin_packing.h"
-#include "write/version.h"
-#include "write/write.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "write/skin_packing.h"
+#include "baker/write/skin_packing.h"
 
 #include <algorithm>
 #include <array>
@@ -7,9 +7,9 @@
 #include <limits>
 #include <map>
 
-#include "mesh/error.h"
-#include "write/schema_values.h"
-#include "write/stream.h"
+#include "baker/mesh/error.h"
+#include "baker/write/schema_values.h"
+#include "baker/write/stream.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "bind/bind_bones.h"
-#include "bind/body_parts.h"
-#include "clusters/clusters.h"
+#include "baker/bind/bind_bones.h"
+#include "baker/bind/body_parts.h"
+#include "baker/clusters/clusters.h"
 #include "sphere_chains_generated.h"
 #include "spherechain/types.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "write/temporary.h"
+#include "baker/write/temporary.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -14,7 +14,7 @@
 #include <set>
 #include <string>
 
-#include "write/leftovers.h"
+#include "baker/write/leftovers.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "write/work_folder.h"
+#include "baker/write/work_folder.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/error.h"
-#include "write/leftovers.h"
+#include "baker/mesh/error.h"
+#include "baker/write/leftovers.h"
 
 namespace spherechain::baker {
 namespace {

@@ -7,13 +7,13 @@
 #include <string_view>
 #include <vector>
 
-#include "bind/bind.h"
-#include "bind/bind_bones.h"
-#include "bind/bind_moments.h"
-#include "bind/body_parts.h"
-#include "chains/chains.h"
-#include "clusters/clusters.h"
-#include "rig/rig.h"
+#include "baker/bind/bind.h"
+#include "baker/bind/bind_bones.h"
+#include "baker/bind/bind_moments.h"
+#include "baker/bind/body_parts.h"
+#include "baker/chains/chains.h"
+#include "baker/clusters/clusters.h"
+#include "baker/rig/rig.h"
 
 namespace spherechain::baker {
 

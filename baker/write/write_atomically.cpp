@@ -4,9 +4,9 @@
 #include <cerrno>
 #include <cstring>
 
-#include "mesh/error.h"
-#include "write/atomic_file.h"
-#include "write/write.h"
+#include "baker/mesh/error.h"
+#include "baker/write/atomic_file.h"
+#include "baker/write/write.h"
 
 namespace spherechain::baker {
 

@@ -2,8 +2,8 @@
 // The kernel for bones: from the caller's matrices to the ones that moments are multiplied with.
 #pragma once
 
-#include "asset/moment_tables.h"
 #include "crowd_primitives.h"
+#include "runtime/src/asset/moment_tables.h"
 
 namespace spherechain::cuda {
 

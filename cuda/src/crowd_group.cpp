@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "asset/status.h"
 #include "crowd_launch.h"
-#include "pose/pose.h"
+#include "runtime/src/base/status.h"
+#include "runtime/src/pose/pose.h"
 
 namespace spherechain::cuda {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <initializer_list>
 
-#include "asset/status.h"
 #include "crowd_view.h"
+#include "runtime/src/base/status.h"
 
 namespace spherechain::cuda {
 

@@ -6,8 +6,8 @@
 
 #include "crowd_launch.h"
 #include "crowd_units.h"
-#include "pairs/filter.h"
-#include "pose/pose.h"
+#include "runtime/src/pairs/filter.h"
+#include "runtime/src/pose/pose.h"
 
 namespace spherechain::cuda {
 namespace {

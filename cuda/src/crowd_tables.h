@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "asset/asset_view.h"
 #include "crowd_view.h"
+#include "runtime/src/asset/asset_view.h"
 
 namespace spherechain::cuda {
 

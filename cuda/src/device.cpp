@@ -2,8 +2,8 @@
 // The calls of CUDA's runtime for enqueue_crowds().
 #include <cuda_runtime_api.h>
 
-#include "asset/status.h"
 #include "crowd_launch.h"
+#include "runtime/src/base/status.h"
 
 namespace spherechain::cuda {
 namespace {

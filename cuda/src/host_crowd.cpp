@@ -5,9 +5,9 @@
 #include <exception>
 #include <vector>
 
-#include "asset/status.h"
 #include "crowd_launch.h"
-#include "pose/pose.h"
+#include "runtime/src/base/status.h"
+#include "runtime/src/pose/pose.h"
 
 namespace spherechain::cuda {
 namespace {

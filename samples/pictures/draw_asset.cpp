@@ -5,11 +5,11 @@
 #include <iostream>
 #include <set>
 
-#include "mesh/error.h"
-#include "pairs/detect_job.h"
+#include "baker/mesh/error.h"
+#include "baker/play/play.h"
+#include "baker/play/player.h"
 #include "picture.h"
-#include "play/play.h"
-#include "play/player.h"
+#include "runtime/src/pairs/detect_job.h"
 
 using namespace spherechain::baker;
 using namespace spherechain::pictures;

@@ -3,10 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "mesh/error.h"
-#include "motion/poses.h"
+#include "baker/mesh/error.h"
+#include "baker/motion/poses.h"
+#include "baker/pipeline/pipeline.h"
 #include "picture.h"
-#include "pipeline/pipeline.h"
 
 using namespace spherechain;
 using namespace spherechain::baker;

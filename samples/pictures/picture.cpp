@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "mesh/error.h"
+#include "baker/mesh/error.h"
 
 // The library is C of another style: its warnings are not ours to mend.
 #pragma GCC diagnostic push

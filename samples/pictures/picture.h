@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "mesh/mesh.h"
-#include "segment/body_plan.h"
-#include "segment/region_colours.h"
+#include "baker/mesh/mesh.h"
+#include "baker/segment/body_plan.h"
+#include "baker/segment/region_colours.h"
 
 namespace spherechain::pictures {
 

@@ -8,13 +8,13 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "baker/mesh/error.h"
+#include "baker/play/target.h"
+#include "baker/report/validation.h"
+#include "baker/truth/truth_cache.h"
+#include "baker/truth/validate.h"
 #include "capsules.h"
 #include "curve.h"
-#include "mesh/error.h"
-#include "play/target.h"
-#include "report/validation.h"
-#include "truth/truth_cache.h"
-#include "truth/validate.h"
 
 using namespace spherechain;
 using namespace spherechain::baker;

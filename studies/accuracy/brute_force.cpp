@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "mesh/even_directions.h"
+#include "baker/mesh/even_directions.h"
 
 namespace spherechain::quality {
 namespace {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "mesh/mesh.h"
+#include "baker/mesh/mesh.h"
 
 namespace spherechain::quality {
 

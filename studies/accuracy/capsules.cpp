@@ -6,8 +6,8 @@
 #include <map>
 #include <numeric>
 
-#include "bind/bind.h"
-#include "mesh/decompose.h"
+#include "baker/bind/bind.h"
+#include "baker/mesh/decompose.h"
 
 namespace spherechain::baker {
 namespace {

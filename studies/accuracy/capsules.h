@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "play/play.h"
-#include "truth/score.h"
-#include "truth/truth.h"
+#include "baker/play/play.h"
+#include "baker/truth/score.h"
+#include "baker/truth/truth.h"
 
 namespace spherechain::baker {
 

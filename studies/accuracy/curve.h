@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
+#include "baker/truth/score.h"
 #include "pair_rule.h"
-#include "truth/score.h"
 
 namespace spherechain::baker {
 

@@ -10,15 +10,15 @@
 #include <fstream>
 #include <map>
 
+#include "baker/mesh/error.h"
+#include "baker/pipeline/pipeline.h"
+#include "baker/play/play.h"
+#include "baker/play/player.h"
 #include "brute_force.h"
 #include "corefinement.h"
-#include "depth/sweep.h"
 #include "jobs.h"
-#include "mesh/error.h"
-#include "pipeline/pipeline.h"
-#include "play/play.h"
-#include "play/player.h"
-#include "skin/exact_triangles.h"
+#include "runtime/src/depth/sweep.h"
+#include "runtime/src/triangles/exact_triangles.h"
 
 namespace {
 

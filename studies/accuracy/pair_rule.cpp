@@ -6,8 +6,8 @@
 #include <iterator>
 #include <limits>
 
-#include "bind/bind.h"
-#include "truth/surface.h"
+#include "baker/bind/bind.h"
+#include "baker/truth/surface.h"
 
 namespace spherechain::baker {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "play/asset_file.h"
+#include "baker/play/asset_file.h"
 
 namespace spherechain::baker {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pipeline/pipeline.h"
+#include "baker/pipeline/pipeline.h"
 
 namespace spherechain::baker {
 

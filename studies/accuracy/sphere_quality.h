@@ -5,9 +5,9 @@
 #include <functional>
 #include <vector>
 
-#include "fit/fit.h"
-#include "mesh/mesh.h"
-#include "mesh/surface_query.h"
+#include "baker/fit/fit.h"
+#include "baker/mesh/mesh.h"
+#include "baker/mesh/surface_query.h"
 
 namespace spherechain::baker {
 

@@ -11,12 +11,12 @@
 #include <iostream>
 #include <set>
 
-#include "play/play.h"
-#include "play/skin_player.h"
-#include "play/target.h"
-#include "volumes/bodies.h"
-#include "volumes/fit_volumes.h"
-#include "volumes/measure.h"
+#include "baker/play/play.h"
+#include "baker/play/skin_player.h"
+#include "baker/play/target.h"
+#include "baker/volumes/bodies.h"
+#include "baker/volumes/fit_volumes.h"
+#include "baker/volumes/measure.h"
 
 using namespace spherechain::baker;
 

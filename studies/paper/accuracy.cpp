@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "baker/mesh/ring.h"
 #include "experiments.h"
-#include "mesh/ring.h"
 #include "statistics.h"
 
 namespace spherechain::paper {

@@ -10,7 +10,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "mesh/error.h"
+#include "baker/mesh/error.h"
 #include "statistics.h"
 
 namespace spherechain::paper {

@@ -7,10 +7,10 @@
 #include <iostream>
 #include <thread>
 
-#include "mesh/error.h"
+#include "baker/mesh/error.h"
+#include "baker/write/write.h"
 #include "report.h"
 #include "tree_time.h"
-#include "write/write.h"
 
 using namespace spherechain;
 using namespace spherechain::paper;

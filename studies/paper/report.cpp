@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
+#include "baker/write/write.h"
 #include "figures.h"
 #include "spherechain/types.h"
 #include "tree_claims.h"
-#include "write/write.h"
 
 namespace spherechain::paper {
 namespace {

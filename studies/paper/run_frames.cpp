@@ -3,9 +3,9 @@
 
 #include <chrono>
 
-#include "pairs/detect_job.h"
-#include "play/asset_file.h"
-#include "refit/refit_job.h"
+#include "baker/play/asset_file.h"
+#include "runtime/src/pairs/detect_job.h"
+#include "runtime/src/refit/refit_job.h"
 #include "statistics.h"
 #include "studies/plain_detection.h"
 

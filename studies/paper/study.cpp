@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study.h"
 
-#include "motion/poses.h"
+#include "baker/motion/poses.h"
 
 namespace spherechain::paper {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/pipeline.h"
+#include "baker/pipeline/pipeline.h"
 
 namespace spherechain::paper {
 

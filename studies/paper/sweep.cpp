@@ -9,8 +9,8 @@
 #include <mutex>
 #include <thread>
 
+#include "baker/play/player.h"
 #include "experiments.h"
-#include "play/player.h"
 #include "refit_error.h"
 #include "run_frames.h"
 #include "statistics.h"

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <chrono>
 
+#include "baker/mesh/error.h"
+#include "baker/play/asset_file.h"
 #include "chain_trees.h"
-#include "mesh/error.h"
-#include "pairs/detect_job.h"
-#include "play/asset_file.h"
-#include "refit/refit_job.h"
+#include "runtime/src/pairs/detect_job.h"
+#include "runtime/src/refit/refit_job.h"
 #include "split_spheres.h"
 #include "statistics.h"
 

@@ -12,9 +12,9 @@
 #include <random>
 #include <stdexcept>
 
-#include "depth/penetration_jobs.h"
-#include "refit/refit_job.h"
-#include "simd/simd.h"
+#include "runtime/src/penetrations/penetration_jobs.h"
+#include "runtime/src/refit/refit_job.h"
+#include "runtime/src/simd/simd.h"
 #include "table.h"
 #include "wrestlers.h"
 

@@ -5,10 +5,10 @@
 #include <cstring>
 #include <filesystem>
 
-#include "mesh/error.h"
-#include "motion/capture.h"
-#include "motion/poses.h"
-#include "refit/refit_job.h"
+#include "baker/mesh/error.h"
+#include "baker/motion/capture.h"
+#include "baker/motion/poses.h"
+#include "runtime/src/refit/refit_job.h"
 
 namespace spherechain::bench {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "asset/asset_view.h"
-#include "motion/motion.h"
-#include "pipeline/pipeline.h"
+#include "baker/motion/motion.h"
+#include "baker/pipeline/pipeline.h"
+#include "runtime/src/asset/asset_view.h"
 #include "spherechain/pose.h"
 
 namespace spherechain::bench {

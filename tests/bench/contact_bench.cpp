@@ -12,8 +12,8 @@
 #include <stdexcept>
 
 #include "contact_finder.h"
-#include "simd/simd.h"
-#include "skin/skin_inputs.h"
+#include "runtime/src/simd/simd.h"
+#include "runtime/src/skin/skin_inputs.h"
 #include "table.h"
 
 using namespace spherechain;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "character.h"
-#include "skin/skin_table.h"
+#include "runtime/src/skin/skin_table.h"
 
 namespace spherechain::bench {
 

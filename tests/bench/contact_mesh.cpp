@@ -3,8 +3,8 @@
 #include <stdexcept>
 
 #include "contact_finder.h"
-#include "pairs/pair_bits.h"
-#include "skin/contact_jobs.h"
+#include "runtime/src/base/pair_bits.h"
+#include "runtime/src/contacts/contact_jobs.h"
 
 namespace spherechain::bench {
 

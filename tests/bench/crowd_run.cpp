@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "pairs/detect_job.h"
+#include "runtime/src/pairs/detect_job.h"
 
 namespace spherechain::bench {
 namespace {

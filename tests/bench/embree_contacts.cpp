@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "contact_finder.h"
-#include "skin/exact_triangles.h"
+#include "runtime/src/triangles/exact_triangles.h"
 
 namespace spherechain::bench {
 namespace {

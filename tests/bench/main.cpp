@@ -14,8 +14,8 @@
 #include "mesh_refit.h"
 #include "pair_finder.h"
 #include "port_probe.h"
-#include "refit/refit_job.h"
-#include "simd/simd.h"
+#include "runtime/src/refit/refit_job.h"
+#include "runtime/src/simd/simd.h"
 #include "table.h"
 #include "timing.h"
 

@@ -2,11 +2,11 @@
 #include "port_probe.h"
 
 // The runtime's own choice of targets, so that the probe's vectors are those of its kernels.
-#include "simd/simd.h"
+#include "runtime/src/simd/simd.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "port_probe.cpp"
-#include "simd/highway.h"
+#include "runtime/src/simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "contact_finder.h"
-#include "depth/penetration_jobs.h"
+#include "runtime/src/penetrations/penetration_jobs.h"
 
 namespace spherechain::bench {
 namespace {

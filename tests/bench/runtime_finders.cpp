@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "pair_finder.h"
-#include "pairs/detect_job.h"
+#include "runtime/src/pairs/detect_job.h"
 
 namespace spherechain::bench {
 namespace {

@@ -12,9 +12,9 @@
 #include <random>
 #include <stdexcept>
 
-#include "simd/simd.h"
-#include "skin/skin_inputs.h"
-#include "step/step_job.h"
+#include "runtime/src/simd/simd.h"
+#include "runtime/src/skin/skin_inputs.h"
+#include "runtime/src/step/step_job.h"
 #include "table.h"
 #include "wrestlers.h"
 

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "simd/simd.h"
-#include "skin/skin_inputs.h"
+#include "runtime/src/simd/simd.h"
+#include "runtime/src/skin/skin_inputs.h"
 
 namespace spherechain::bench {
 

@@ -5,9 +5,9 @@
 #include <random>
 #include <vector>
 
+#include "baker/truth/intersections.h"
 #include "character.h"
-#include "skin/skin_table.h"
-#include "truth/intersections.h"
+#include "runtime/src/skin/skin_table.h"
 
 namespace spherechain::bench {
 

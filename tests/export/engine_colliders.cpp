@@ -8,10 +8,10 @@
 #include <iostream>
 #include <random>
 
-#include "export/formats.h"
-#include "play/play.h"
+#include "baker/export/formats.h"
+#include "baker/play/play.h"
+#include "baker/volumes/fit_volumes.h"
 #include "posed_json.h"
-#include "volumes/fit_volumes.h"
 
 using namespace spherechain::baker;
 namespace test = spherechain::test;

@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "play/play.h"
+#include "baker/play/play.h"
+#include "baker/volumes/fit_volumes.h"
 #include "posed_json.h"
-#include "volumes/fit_volumes.h"
 
 using namespace spherechain::baker;
 using namespace spherechain::test;

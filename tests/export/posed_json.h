@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "volumes/colliders.h"
-#include "volumes/volume_json.h"
+#include "baker/volumes/colliders.h"
+#include "baker/volumes/volume_json.h"
 
 // Reference for other engines. Positions in metres, rotations x y z w, in the axes of the rest pose.
 namespace spherechain::test {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "fuzz_case.h"
-#include "pose/pose.h"
-#include "skin/exact_triangles.h"
-#include "skin/skin_table.h"
+#include "runtime/src/pose/pose.h"
+#include "runtime/src/skin/skin_table.h"
+#include "runtime/src/triangles/exact_triangles.h"
 
 namespace spherechain::test {
 namespace {

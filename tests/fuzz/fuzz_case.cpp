@@ -6,8 +6,8 @@
 #include <cstring>
 #include <limits>
 
-#include "pose/pose.h"
-#include "simd/simd.h"
+#include "runtime/src/pose/pose.h"
+#include "runtime/src/simd/simd.h"
 #include "tiny_skin.h"
 
 namespace spherechain::test {

@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "arena.h"
-#include "asset/asset_view.h"
-#include "depth/penetration_jobs.h"
-#include "pairs/detect_job.h"
-#include "pose/pose.h"
 #include "random.h"
-#include "refit/refit_job.h"
+#include "runtime/src/asset/asset_view.h"
+#include "runtime/src/pairs/detect_job.h"
+#include "runtime/src/penetrations/penetration_jobs.h"
+#include "runtime/src/pose/pose.h"
+#include "runtime/src/refit/refit_job.h"
+#include "runtime/src/step/step_job.h"
 #include "spherechain/spherechain.h"
-#include "step/step_job.h"
 
 namespace spherechain::test {
 

@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "fuzz_case.h"
-#include "pose/pose.h"
+#include "runtime/src/pose/pose.h"
 
 namespace spherechain::test {
 namespace {

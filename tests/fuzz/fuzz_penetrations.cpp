@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fuzz_case.h"
-#include "skin/skin_table.h"
+#include "runtime/src/skin/skin_table.h"
 
 namespace spherechain::test {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "asset/asset_view.h"
+#include "runtime/src/asset/asset_view.h"
 
 namespace spherechain::test {
 

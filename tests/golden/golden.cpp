@@ -15,7 +15,7 @@
 #include "crowds.h"
 #include "hashes.h"
 #include "jobs.h"
-#include "pairs/pair_bits.h"
+#include "runtime/src/base/pair_bits.h"
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "baker/pipeline/pipeline.h"
 #include "creatures.h"
-#include "pipeline/pipeline.h"
 
 namespace {
 

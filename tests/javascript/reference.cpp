@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "simd/simd.h"
+#include "runtime/src/simd/simd.h"
 #include "spherechain/spherechain.h"
 
 using namespace spherechain;

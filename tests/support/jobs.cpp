@@ -5,8 +5,8 @@
 #include <limits>
 #include <memory>
 
-#include "simd/simd.h"
-#include "skin/skin_inputs.h"
+#include "runtime/src/simd/simd.h"
+#include "runtime/src/skin/skin_inputs.h"
 
 namespace spherechain::test {
 namespace {

@@ -6,13 +6,13 @@
 #include <cstring>
 #include <vector>
 
-#include "depth/penetration_jobs.h"
-#include "pairs/detect_job.h"
-#include "refit/refit_job.h"
-#include "simd/simd.h"
-#include "skin/skin_table.h"
+#include "runtime/src/pairs/detect_job.h"
+#include "runtime/src/penetrations/penetration_jobs.h"
+#include "runtime/src/refit/refit_job.h"
+#include "runtime/src/simd/simd.h"
+#include "runtime/src/skin/skin_table.h"
+#include "runtime/src/step/step_job.h"
 #include "spherechain/spherechain.h"
-#include "step/step_job.h"
 
 namespace spherechain::test {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "asset/asset_view.h"
-#include "skin/skin_table.h"
+#include "runtime/src/asset/asset_view.h"
+#include "runtime/src/skin/skin_table.h"
 
 namespace spherechain::test {
 

@@ -5,12 +5,12 @@
 #include <cstddef>
 #include <cstring>
 
-#include "asset/message.h"
-#include "body/body.h"
-#include "simd/simd.h"
-#include "skin/scene_setup.h"
-#include "skin/skin_inputs.h"
-#include "skin/skin_table.h"
+#include "runtime/src/base/message.h"
+#include "runtime/src/bodies/body.h"
+#include "runtime/src/clusters/set_up.h"
+#include "runtime/src/simd/simd.h"
+#include "runtime/src/skin/skin_inputs.h"
+#include "runtime/src/skin/skin_table.h"
 #include "spherechain/version.h"
 
 #define EXPORT(name) extern "C" __attribute__((export_name(#name)))

@@ -5,9 +5,9 @@
 
 #include "model.h"
 #include "moment_pass.h"
-#include "pairs/detect_job.h"
 #include "parallel.h"
-#include "refit/refit_job.h"
+#include "runtime/src/pairs/detect_job.h"
+#include "runtime/src/refit/refit_job.h"
 
 namespace spherechain::python {
 namespace {

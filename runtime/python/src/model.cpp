@@ -5,8 +5,8 @@
 #include <new>
 #include <stdexcept>
 
-#include "body/model.h"
-#include "skin/scene_setup.h"
+#include "runtime/src/bodies/model.h"
+#include "runtime/src/clusters/set_up.h"
 
 namespace spherechain::python {
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "skin/skin_table.h"
+#include "runtime/src/skin/skin_table.h"
 #include "spherechain/spherechain.h"
 
 namespace spherechain::python {

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "asset/asset_view.h"
+#include "runtime/src/asset/asset_view.h"
 
 namespace spherechain::python {
 

@@ -2,7 +2,7 @@
 // The views of an asset's bytes, and what an open asset tells.
 #include <type_traits>
 
-#include "asset/asset_view.h"
+#include "runtime/src/asset/asset_view.h"
 #include "sphere_chains_generated.h"
 
 namespace spherechain {

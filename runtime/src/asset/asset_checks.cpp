@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "asset/asset_checks.h"
+#include "runtime/src/asset/asset_checks.h"
 
 #include <bitset>
 #include <utility>
 
-#include "asset/memory.h"
-#include "pairs/pair_bits.h"
+#include "runtime/src/base/memory.h"
+#include "runtime/src/base/pair_bits.h"
 #include "sphere_chains_generated.h"
 
 namespace spherechain {

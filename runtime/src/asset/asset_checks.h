@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "asset/asset_view.h"
-#include "asset/message.h"
+#include "runtime/src/asset/asset_view.h"
+#include "runtime/src/base/message.h"
 
 namespace spherechain {
 

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "asset/moment_tables.h"
-#include "asset/skin_data.h"
-#include "asset/span.h"
+#include "runtime/src/asset/moment_tables.h"
+#include "runtime/src/asset/skin_data.h"
+#include "runtime/src/base/span.h"
 #include "spherechain/asset.h"
 
 namespace spherechain {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <bitset>
 
-#include "asset/asset_checks.h"
+#include "runtime/src/asset/asset_checks.h"
 
 namespace spherechain {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "asset/span.h"
+#include "runtime/src/base/span.h"
 #include "spherechain/types.h"
 
 namespace spherechain {

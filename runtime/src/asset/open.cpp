@@ -3,8 +3,8 @@
 #include <bitset>
 #include <new>
 
-#include "asset/asset_checks.h"
-#include "asset/status.h"
+#include "runtime/src/asset/asset_checks.h"
+#include "runtime/src/base/status.h"
 #include "sphere_chains_generated.h"
 
 namespace spherechain {

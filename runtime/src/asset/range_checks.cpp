@@ -3,7 +3,7 @@
 // weight of 1e30, a spread of 1e-30. The limits are far beyond what bodies have.
 #include <algorithm>
 
-#include "asset/asset_checks.h"
+#include "runtime/src/asset/asset_checks.h"
 
 namespace spherechain {
 namespace {

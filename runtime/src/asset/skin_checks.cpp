@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "asset/asset_checks.h"
-#include "asset/stream.h"
+#include "runtime/src/asset/asset_checks.h"
+#include "runtime/src/base/stream.h"
 
 namespace spherechain {
 namespace {

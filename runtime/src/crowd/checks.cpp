@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "crowd/checks.h"
+#include "runtime/src/crowd/checks.h"
 
 #include <initializer_list>
 
-#include "asset/memory.h"
-#include "asset/status.h"
-#include "pairs/filter.h"
-#include "pairs/pair_bits.h"
-#include "refit/inputs.h"
+#include "runtime/src/base/memory.h"
+#include "runtime/src/base/pair_bits.h"
+#include "runtime/src/base/status.h"
+#include "runtime/src/pairs/filter.h"
+#include "runtime/src/refit/inputs.h"
 
 namespace spherechain {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "asset/asset_view.h"
+#include "runtime/src/asset/asset_view.h"
 #include "spherechain/crowd.h"
 
 namespace spherechain {

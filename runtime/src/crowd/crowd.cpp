@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cstring>
 
-#include "asset/status.h"
-#include "crowd/checks.h"
-#include "crowd/lanes.h"
-#include "pairs/pair_bits.h"
-#include "simd/arithmetic.h"
-#include "simd/simd.h"
+#include "runtime/src/base/arithmetic.h"
+#include "runtime/src/base/pair_bits.h"
+#include "runtime/src/base/status.h"
+#include "runtime/src/crowd/checks.h"
+#include "runtime/src/crowd/lanes.h"
+#include "runtime/src/simd/simd.h"
 
 namespace spherechain {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "crowd/lanes.h"
+#include "runtime/src/crowd/lanes.h"
 
 #include <cfloat>
 
-#include "pairs/pair_bits.h"
-#include "simd/arithmetic.h"
-#include "simd/simd.h"
+#include "runtime/src/base/arithmetic.h"
+#include "runtime/src/base/pair_bits.h"
+#include "runtime/src/simd/simd.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "crowd/lanes.cpp"
-#include "pairs/sphere_columns.h"
-#include "simd/highway.h"
+#define HWY_TARGET_INCLUDE "runtime/src/crowd/lanes.cpp"
+#include "runtime/src/pairs/sphere_columns.h"
+#include "runtime/src/simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

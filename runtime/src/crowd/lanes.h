@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "asset/asset_view.h"
-#include "refit/inputs.h"
+#include "runtime/src/asset/asset_view.h"
+#include "runtime/src/refit/inputs.h"
 #include "spherechain/types.h"
 
 namespace spherechain {

@@ -2,14 +2,14 @@
 // Refit by moments of as many instances as a register has lanes, one a lane. docs/arithmetic.md has the
 // arithmetic. A batch's Gram matrices are made once for all of its spheres, two columns at a time: half of them fit
 // the first cache beside what else is read, and leave one register a sphere to be kept.
-#include "crowd/lanes.h"
-#include "simd/arithmetic.h"
-#include "simd/simd.h"
+#include "runtime/src/base/arithmetic.h"
+#include "runtime/src/crowd/lanes.h"
+#include "runtime/src/simd/simd.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "crowd/moments.cpp"
-#include "pairs/sphere_registers.h"
-#include "simd/highway.h"
+#define HWY_TARGET_INCLUDE "runtime/src/crowd/moments.cpp"
+#include "runtime/src/pairs/sphere_registers.h"
+#include "runtime/src/simd/highway.h"
 
 #include <hwy/cache_control.h>
 

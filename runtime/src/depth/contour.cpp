@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "depth/contour.h"
+#include "runtime/src/depth/contour.h"
 
 #include <algorithm>
 
-#include "depth/distance.h"
+#include "runtime/src/depth/distance.h"
 
 namespace spherechain {
 namespace {

@@ -2,7 +2,7 @@
 // Where two body parts cross: the segments in which their triangles meet, and what they say about the way out.
 #pragma once
 
-#include "depth/posed_skin.h"
+#include "runtime/src/depth/posed_skin.h"
 #include "spherechain/contacts.h"
 
 namespace spherechain {

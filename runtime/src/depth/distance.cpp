@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "depth/distance.h"
+#include "runtime/src/depth/distance.h"
 
 #include <algorithm>
 

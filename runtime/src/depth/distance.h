@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "depth/posed_skin.h"
+#include "runtime/src/depth/posed_skin.h"
 
 namespace spherechain {
 

@@ -2,7 +2,7 @@
 // Does a way end inside the other part, where no triangles meet either?
 #include <algorithm>
 
-#include "depth/sweep.h"
+#include "runtime/src/depth/sweep.h"
 
 namespace spherechain {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "depth/posed_skin.h"
+#include "runtime/src/depth/posed_skin.h"
 
 #include <algorithm>
 #include <cfloat>
 
-#include "skin/skin_inputs.h"
+#include "runtime/src/skin/skin_inputs.h"
 
 namespace spherechain {
 namespace {

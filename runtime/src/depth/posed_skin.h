@@ -2,10 +2,10 @@
 // The skin in a pose, and at rest, triangle by triangle.
 #pragma once
 
-#include "pose/pose.h"
-#include "skin/covered.h"
-#include "skin/double3.h"
-#include "skin/skin_table.h"
+#include "runtime/src/base/double3.h"
+#include "runtime/src/pose/pose.h"
+#include "runtime/src/skin/covered.h"
+#include "runtime/src/skin/skin_table.h"
 
 namespace spherechain {
 

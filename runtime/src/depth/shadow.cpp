@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "depth/shadow.h"
+#include "runtime/src/depth/shadow.h"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 // Two triangles seen along a direction: where they hide each other, and how far one is behind the other there.
 #pragma once
 
-#include "depth/posed_skin.h"
+#include "runtime/src/depth/posed_skin.h"
 
 namespace spherechain {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "depth/sweep.h"
+#include "runtime/src/depth/sweep.h"
 
 #include <algorithm>
 
-#include "pairs/pair_bits.h"
+#include "runtime/src/base/pair_bits.h"
 
 namespace spherechain {
 namespace {

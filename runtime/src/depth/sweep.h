@@ -3,8 +3,8 @@
 // interval of the way; the answer is the first place that none of them blocks.
 #pragma once
 
-#include "depth/contour.h"
-#include "depth/shadow.h"
+#include "runtime/src/depth/contour.h"
+#include "runtime/src/depth/shadow.h"
 
 namespace spherechain {
 

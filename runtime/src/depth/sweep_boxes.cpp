@@ -4,7 +4,7 @@
 #include <cfloat>
 #include <cmath>
 
-#include "depth/sweep.h"
+#include "runtime/src/depth/sweep.h"
 
 namespace spherechain {
 namespace {

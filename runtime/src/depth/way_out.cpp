@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "depth/way_out.h"
+#include "runtime/src/depth/way_out.h"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 // The shortest of the ways out along a few directions that are likely to be short.
 #pragma once
 
-#include "depth/sweep.h"
+#include "runtime/src/depth/sweep.h"
 
 namespace spherechain {
 

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
-#include "pairs/detect_job.h"
+#include "runtime/src/pairs/detect_job.h"
 
 #include <algorithm>
 
-#include "asset/memory.h"
-#include "asset/status.h"
-#include "pairs/filter.h"
-#include "pairs/pair_bits.h"
-#include "pairs/scene.h"
-#include "pose/pose.h"
-#include "simd/arithmetic.h"
-#include "simd/simd.h"
+#include "runtime/src/base/arithmetic.h"
+#include "runtime/src/base/memory.h"
+#include "runtime/src/base/pair_bits.h"
+#include "runtime/src/base/status.h"
+#include "runtime/src/pairs/filter.h"
+#include "runtime/src/pairs/spheres_to_pair.h"
+#include "runtime/src/pose/pose.h"
+#include "runtime/src/simd/simd.h"
 
 namespace spherechain {
 namespace {
 
-Status check(const DetectJob& job, Target& resolved, Scene& scene) {
+Status check(const DetectJob& job, Target& resolved, SpheresToPair& set) {
   if (job.asset == nullptr) {
     return refuse(SC_NULL, SC_FIELD_ASSET);
   }
@@ -31,7 +31,7 @@ Status check(const DetectJob& job, Target& resolved, Scene& scene) {
   if (job.sphere_count < spheres.size) {
     return refuse(SC_TOO_SMALL, SC_FIELD_SPHERES);
   }
-  scene.spheres = spheres;
+  set.spheres = spheres;
   fetch(range_of(spheres));
   const Span<Pair> pairs{job.pairs, job.pair_capacity};
   const Span<std::uint64_t> bits{job.bits, job.bit_words};
@@ -56,12 +56,12 @@ Status check(const DetectJob& job, Target& resolved, Scene& scene) {
     }
   }
   if (job.table != nullptr) {
-    const Status status = read_detect_table(asset, job.radius, job.table, scene);
+    const Status status = read_detect_table(asset, job.radius, job.table, set);
     if (status != SC_OK) {
       return status;
     }
   } else {
-    scene.choice = choice_of(asset, job.radius, job.filter);
+    set.choice = choice_of(asset, job.radius, job.filter);
   }
   if (!resolve_target(job.target, resolved)) {
     return refuse(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET);
@@ -69,14 +69,14 @@ Status check(const DetectJob& job, Target& resolved, Scene& scene) {
   const bool is_aliased =
       any_shared({range_of(pairs), range_of(bits)},
                  {range_of(spheres), range_of(asset.ignored()),
-                  range_of(Span<const std::uint64_t>{job.table, scene.table_words}), range_of(job.filter)});
+                  range_of(Span<const std::uint64_t>{job.table, set.table_words}), range_of(job.filter)});
   return is_aliased ? refuse(SC_ALIASED, pairs.size > 0 ? SC_FIELD_PAIRS : SC_FIELD_BITS) : done();
 }
 
 // The rest pairs in the tile's columns.
-Span<const RestPair> rest_pairs_of(const Scene& scene, const TilePlace& place) {
-  const Span<const RestPair> all = scene.choice.rest_pairs;
-  if (place.column_count == scene.spheres.size) {
+Span<const RestPair> rest_pairs_of(const SpheresToPair& set, const TilePlace& place) {
+  const Span<const RestPair> all = set.choice.rest_pairs;
+  if (place.column_count == set.spheres.size) {
     return all;
   }
   const auto is_before = [](const RestPair& pair, std::size_t a) { return pair.a < a; };
@@ -86,14 +86,14 @@ Span<const RestPair> rest_pairs_of(const Scene& scene, const TilePlace& place) {
 }
 
 // The pairs of a tile for which no lists are prepared.
-void find_unprepared(Target target, const Scene& scene, Tile& tile, FoundPairs& found) {
+void find_unprepared(Target target, const SpheresToPair& set, Tile& tile, FoundPairs& found) {
   constexpr std::size_t kRestRoom = 256;
   std::uint16_t wanted[kMaxStrips];
   ListedPair strips[kMaxStrips], rest_pairs[kRestRoom];
   float rest_scales[kRestRoom];
   const PairListBuffers buffers{wanted, strips, rest_pairs, rest_scales, kRestRoom};
-  const std::size_t strip_count = fill_strips(target, scene.choice, tile.place, buffers);
-  Span<const RestPair> left = rest_pairs_of(scene, tile.place);
+  const std::size_t strip_count = fill_strips(target, set.choice, tile.place, buffers);
+  Span<const RestPair> left = rest_pairs_of(set, tile.place);
   do {  // strips come with the last rest pairs, once they have none of them
     const std::size_t rest_count = move_rest_pairs(left, tile.place, buffers);
     const PairLists lists{wanted, strips, left.size > 0 ? 0 : strip_count, rest_pairs, rest_scales, rest_count};
@@ -102,21 +102,21 @@ void find_unprepared(Target target, const Scene& scene, Tile& tile, FoundPairs& 
   } while (left.size > 0);
 }
 
-void detect(Target target, const Scene& scene, PairOutput& output) {
-  const std::size_t n = scene.spheres.size;
+void detect(Target target, const SpheresToPair& set, PairOutput& output) {
+  const std::size_t n = set.spheres.size;
   FoundPairs found(output);
   Tile tile{};
   for (std::size_t first = 0; first < n; first += kTileSize) {
     const std::size_t column_count = std::min(n - first, kTileSize);
-    tile.columns = scene.spheres.data + first;
+    tile.columns = set.spheres.data + first;
     for (std::size_t first_row = first; first_row < n; first_row += kTileSize) {
       tile.place = {first, column_count, first_row, std::min(n - first_row, kTileSize)};
-      tile.rows = scene.spheres.data + first_row;
-      if (scene.has_lists) {
-        tile.lists = &scene.lists;
+      tile.rows = set.spheres.data + first_row;
+      if (set.has_lists) {
+        tile.lists = &set.lists;
         find_pairs(target, tile, found);
       } else {
-        find_unprepared(target, scene, tile, found);
+        find_unprepared(target, set, tile, found);
       }
       if (n > kTileSize) {
         output.take(tile.place, found);
@@ -172,15 +172,15 @@ void PairOutput::finish(Target resolved, const TilePlace& place, FoundPairs& fou
 
 Status DetectJob::run() noexcept {
   Target resolved{};
-  Scene scene;
-  const Status status = check(*this, resolved, scene);
+  SpheresToPair set;
+  const Status status = check(*this, resolved, set);
   if (status != SC_OK) {
     return status;
   }
   const Span<std::uint64_t> out{bits, bit_words};
   std::fill(out.begin(), out.end(), std::uint64_t{0});
   PairOutput output({pairs, pair_capacity}, out);
-  detect(resolved, scene, output);
+  detect(resolved, set, output);
   pair_count = output.count();
   // A caller who only wants the count brings no list.
   return pair_capacity > 0 && pair_count > pair_capacity ? refuse(SC_OVERFLOW, SC_FIELD_PAIRS) : done();

@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "asset/memory.h"
-#include "asset/status.h"
-#include "pairs/filter.h"
-#include "pairs/pair_bits.h"
-#include "pairs/scene.h"
-#include "pose/pose.h"
-#include "simd/simd.h"
+#include "runtime/src/base/memory.h"
+#include "runtime/src/base/pair_bits.h"
+#include "runtime/src/base/status.h"
+#include "runtime/src/pairs/filter.h"
+#include "runtime/src/pairs/spheres_to_pair.h"
+#include "runtime/src/pose/pose.h"
+#include "runtime/src/simd/simd.h"
 
 namespace spherechain {
 namespace {
@@ -93,7 +93,7 @@ void fill(const AssetView& asset, Radius radius, const Filter* filter, std::uint
 
 }  // namespace
 
-Status read_detect_table(const AssetView& asset, Radius radius, const std::uint64_t* words, Scene& scene) {
+Status read_detect_table(const AssetView& asset, Radius radius, const std::uint64_t* words, SpheresToPair& set) {
   if (any_misaligned(words)) {
     return refuse(SC_MISALIGNED, SC_FIELD_TABLE);
   }
@@ -106,14 +106,14 @@ Status read_detect_table(const AssetView& asset, Radius radius, const std::uint6
   const Content content(const_cast<std::uint64_t*>(words), asset);
   const std::size_t n = asset.spheres().size;
   const PairListBuffers& lists = content.lists;
-  scene.table_words = content.size;
-  scene.has_lists = is_one_tile(asset);
-  if (scene.has_lists) {
-    scene.lists = {lists.wanted,     lists.strips,      strips_of(n),
-                   lists.rest_pairs, lists.rest_scales, static_cast<std::size_t>(words[kRestPairs])};
+  set.table_words = content.size;
+  set.has_lists = is_one_tile(asset);
+  if (set.has_lists) {
+    set.lists = {lists.wanted,     lists.strips,      strips_of(n),
+                 lists.rest_pairs, lists.rest_scales, static_cast<std::size_t>(words[kRestPairs])};
   } else {
-    scene.choice.rest_pairs = asset.rest_pairs(radius);
-    scene.choice.ignored = {content.ignored, words_for(pairs_of(n))};
+    set.choice.rest_pairs = asset.rest_pairs(radius);
+    set.choice.ignored = {content.ignored, words_for(pairs_of(n))};
   }
   return done();
 }

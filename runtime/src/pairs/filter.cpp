@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pairs/filter.h"
+#include "runtime/src/pairs/filter.h"
 
 #include <algorithm>
 

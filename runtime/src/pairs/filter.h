@@ -2,10 +2,10 @@
 // A caller's lists and filter, checked.
 #pragma once
 
-#include "asset/asset_view.h"
-#include "asset/memory.h"
-#include "asset/status.h"
-#include "pairs/pair_bits.h"
+#include "runtime/src/asset/asset_view.h"
+#include "runtime/src/base/memory.h"
+#include "runtime/src/base/pair_bits.h"
+#include "runtime/src/base/status.h"
 #include "spherechain/filter.h"
 
 namespace spherechain {

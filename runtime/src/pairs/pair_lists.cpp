@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "pairs/pair_lists.h"
+#include "runtime/src/pairs/pair_lists.h"
 
-#include "pairs/pair_bits.h"
-#include "simd/arithmetic.h"
-#include "simd/simd.h"
+#include "runtime/src/base/arithmetic.h"
+#include "runtime/src/base/pair_bits.h"
+#include "runtime/src/simd/simd.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "pairs/pair_lists.cpp"
-#include "simd/highway.h"
+#define HWY_TARGET_INCLUDE "runtime/src/pairs/pair_lists.cpp"
+#include "runtime/src/simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "asset/asset_view.h"
-#include "pairs/tile.h"
+#include "runtime/src/asset/asset_view.h"
+#include "runtime/src/pairs/tile.h"
 #include "spherechain/filter.h"
 
 namespace spherechain {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Spheres by coordinates, and which pairs of them may touch.
-#include "simd/highway.h"
+#include "runtime/src/simd/highway.h"
 
 #if defined(SPHERECHAIN_PAIRS_SPHERE_COLUMNS_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_PAIRS_SPHERE_COLUMNS_H
@@ -11,8 +11,8 @@
 
 #include <cfloat>
 
-#include "pairs/sphere_registers.h"
-#include "pairs/tile.h"
+#include "runtime/src/pairs/sphere_registers.h"
+#include "runtime/src/pairs/tile.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Spheres into registers, and the rule of detect.h for listed pairs, a register of them at a time.
-#include "simd/highway.h"
+#include "runtime/src/simd/highway.h"
 
 #if defined(SPHERECHAIN_PAIRS_SPHERE_REGISTERS_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_PAIRS_SPHERE_REGISTERS_H

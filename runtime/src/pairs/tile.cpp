@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "pairs/tile.h"
+#include "runtime/src/pairs/tile.h"
 
 #include <cstring>
 
-#include "simd/arithmetic.h"
-#include "simd/simd.h"
+#include "runtime/src/base/arithmetic.h"
+#include "runtime/src/simd/simd.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "pairs/tile.cpp"
-#include "pairs/sphere_columns.h"
-#include "simd/highway.h"
+#define HWY_TARGET_INCLUDE "runtime/src/pairs/tile.cpp"
+#include "runtime/src/pairs/sphere_columns.h"
+#include "runtime/src/simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

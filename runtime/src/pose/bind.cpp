@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "asset/message.h"
-#include "asset/status.h"
-#include "pose/pose.h"
+#include "runtime/src/base/message.h"
+#include "runtime/src/base/status.h"
+#include "runtime/src/pose/pose.h"
 
 namespace spherechain {
 namespace {

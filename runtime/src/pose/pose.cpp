@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "pose/pose.h"
+#include "runtime/src/pose/pose.h"
 
 #include <cmath>
 
-#include "asset/status.h"
+#include "runtime/src/base/status.h"
 
 namespace spherechain {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <cstddef>
 
-#include "asset/asset_view.h"
-#include "asset/memory.h"
+#include "runtime/src/asset/asset_view.h"
+#include "runtime/src/base/memory.h"
 #include "spherechain/pose.h"
 
 namespace spherechain {

@@ -2,8 +2,8 @@
 // Are these the vertices that the asset was baked from?
 #include <cstring>
 
-#include "asset/status.h"
-#include "pose/pose.h"
+#include "runtime/src/base/status.h"
+#include "runtime/src/pose/pose.h"
 
 using namespace spherechain;
 

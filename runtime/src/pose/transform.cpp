@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "pose/transform.h"
+#include "runtime/src/pose/transform.h"
 
-#include "asset/memory.h"
-#include "asset/status.h"
+#include "runtime/src/base/memory.h"
+#include "runtime/src/base/status.h"
 
 namespace spherechain {
 

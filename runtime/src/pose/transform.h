@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "skin/double3.h"
+#include "runtime/src/base/double3.h"
 #include "spherechain/pose.h"
 
 namespace spherechain {

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-#include "pose/pose.h"
+#include "runtime/src/pose/pose.h"
 
 namespace spherechain {
 

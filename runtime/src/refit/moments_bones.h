@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Bones' matrices as refit by moments reads them.
-#include "simd/highway.h"
+#include "runtime/src/simd/highway.h"
 
 #if defined(SPHERECHAIN_REFIT_MOMENTS_BONES_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_REFIT_MOMENTS_BONES_H
@@ -9,7 +9,7 @@
 #define SPHERECHAIN_REFIT_MOMENTS_BONES_H
 #endif
 
-#include "refit/inputs.h"
+#include "runtime/src/refit/inputs.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

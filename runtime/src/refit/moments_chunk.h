@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Four spheres of their sums.
-#include "simd/highway.h"
+#include "runtime/src/simd/highway.h"
 
 #if defined(SPHERECHAIN_REFIT_MOMENTS_CHUNK_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_REFIT_MOMENTS_CHUNK_H
@@ -9,7 +9,7 @@
 #define SPHERECHAIN_REFIT_MOMENTS_CHUNK_H
 #endif
 
-#include "refit/moments_bones.h"
+#include "runtime/src/refit/moments_bones.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

@@ -4,16 +4,16 @@
 // matrices, a batch's Gram matrices, the sums of some spheres.
 #include <cstring>
 
-#include "refit/inputs.h"
-#include "simd/arithmetic.h"
-#include "simd/simd.h"
+#include "runtime/src/base/arithmetic.h"
+#include "runtime/src/refit/inputs.h"
+#include "runtime/src/simd/simd.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "refit/moments_kernel.cpp"
-#include "simd/highway.h"
+#define HWY_TARGET_INCLUDE "runtime/src/refit/moments_kernel.cpp"
+#include "runtime/src/simd/highway.h"
 
-#include "refit/moments_bones.h"
-#include "refit/moments_chunk.h"
+#include "runtime/src/refit/moments_bones.h"
+#include "runtime/src/refit/moments_chunk.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

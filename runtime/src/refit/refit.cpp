@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Spheres from bones (refit/moments_kernel.cpp), or from the pivots' deformed corners.
-#include "refit/refit_job.h"
+#include "runtime/src/refit/refit_job.h"
 
 #include <cmath>
 
-#include "asset/status.h"
-#include "refit/inputs.h"
-#include "simd/arithmetic.h"
-#include "simd/simd.h"
+#include "runtime/src/base/arithmetic.h"
+#include "runtime/src/base/status.h"
+#include "runtime/src/refit/inputs.h"
+#include "runtime/src/simd/simd.h"
 
 namespace spherechain {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "simd/fused.h"
+#include "runtime/src/simd/fused.h"
 
 namespace spherechain {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "simd/arithmetic.h"
+#include "runtime/src/base/arithmetic.h"
 
 namespace spherechain {
 

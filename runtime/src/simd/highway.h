@@ -3,8 +3,8 @@
 // Debian has it only as a shared library. A file of kernels starts with
 //
 //   #undef HWY_TARGET_INCLUDE
-//   #define HWY_TARGET_INCLUDE "simd/highway.h"
-//   #include "simd/highway.h"
+//   #define HWY_TARGET_INCLUDE "runtime/src/simd/highway.h"
+//   #include "runtime/src/simd/highway.h"
 //
 // and is then compiled once a target, its kernels between HWY_BEFORE_NAMESPACE(); namespace spherechain { namespace
 // HWY_NAMESPACE { and HWY_AFTER_NAMESPACE();. What comes once goes between #if HWY_ONCE and #endif. Kernels call no
@@ -36,7 +36,7 @@
 
 #include <cstdint>
 
-#include "simd/fused.h"
+#include "runtime/src/simd/fused.h"
 
 #if defined(HWY_DISABLE_BMI2_FMA)
 #error "spherechain's AVX2 target fuses multiply-adds: HWY_DISABLE_BMI2_FMA would change its results"
@@ -50,7 +50,7 @@
 #endif
 
 #if HWY_TARGET == HWY_WASM
-#include "simd/highway_wasm.h"
+#include "runtime/src/simd/highway_wasm.h"
 #endif
 
 HWY_BEFORE_NAMESPACE();

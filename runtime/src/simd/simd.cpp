@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "simd/simd.h"
+#include "runtime/src/simd/simd.h"
 
 #include <algorithm>
 #include <atomic>
@@ -10,8 +10,8 @@
 #endif
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "simd/simd.cpp"
-#include "simd/highway.h"
+#define HWY_TARGET_INCLUDE "runtime/src/simd/simd.cpp"
+#include "runtime/src/simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

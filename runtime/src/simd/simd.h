@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "asset/span.h"
+#include "runtime/src/base/span.h"
 #include "spherechain/types.h"
 
 namespace spherechain {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "skin/covered.h"
+#include "runtime/src/skin/covered.h"
 
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 
-#include "skin/double3.h"
+#include "runtime/src/base/double3.h"
 
 namespace spherechain {
 namespace {

@@ -3,7 +3,7 @@
 // fronts every look ends at another piece. Of eight triangles of a cluster that follow one another, one is looked from.
 #pragma once
 
-#include "skin/skin_table.h"
+#include "runtime/src/skin/skin_table.h"
 
 namespace spherechain {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "skin/skin_table.h"
+#include "runtime/src/skin/skin_table.h"
 
 namespace spherechain {
 

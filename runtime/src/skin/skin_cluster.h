@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One cluster's vertices in a pose, a slot a lane; docs/arithmetic.md has the arithmetic.
-#include "simd/highway.h"
+#include "runtime/src/simd/highway.h"
 
 #if defined(SPHERECHAIN_SKIN_SKIN_CLUSTER_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_SKIN_SKIN_CLUSTER_H
@@ -9,7 +9,7 @@
 #define SPHERECHAIN_SKIN_SKIN_CLUSTER_H
 #endif
 
-#include "skin/skin_inputs.h"
+#include "runtime/src/skin/skin_inputs.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

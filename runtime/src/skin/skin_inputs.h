@@ -5,8 +5,8 @@
 
 #include <cstddef>
 
-#include "pose/pose.h"
-#include "skin/skin_table.h"
+#include "runtime/src/pose/pose.h"
+#include "runtime/src/skin/skin_table.h"
 
 namespace spherechain {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "simd/arithmetic.h"
-#include "simd/simd.h"
-#include "skin/skin_inputs.h"
+#include "runtime/src/base/arithmetic.h"
+#include "runtime/src/simd/simd.h"
+#include "runtime/src/skin/skin_inputs.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "skin/skin_kernel.cpp"
-#include "simd/highway.h"
-#include "skin/skin_cluster.h"
+#define HWY_TARGET_INCLUDE "runtime/src/skin/skin_kernel.cpp"
+#include "runtime/src/simd/highway.h"
+#include "runtime/src/skin/skin_cluster.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "skin/skin_table.h"
+#include "runtime/src/skin/skin_table.h"
 
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <cstring>
 
-#include "asset/memory.h"
-#include "asset/status.h"
-#include "asset/stream.h"
-#include "skin/contact_jobs.h"
-#include "skin/covered.h"
-#include "skin/double3.h"
+#include "runtime/src/base/double3.h"
+#include "runtime/src/base/memory.h"
+#include "runtime/src/base/status.h"
+#include "runtime/src/base/stream.h"
+#include "runtime/src/skin/covered.h"
+#include "runtime/src/skin/job_body.h"
 
 namespace spherechain {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "asset/asset_view.h"
+#include "runtime/src/asset/asset_view.h"
 
 namespace spherechain {
 

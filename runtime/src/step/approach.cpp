@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "step/approach.h"
+#include "runtime/src/step/approach.h"
 
 #include <algorithm>
 #include <cmath>

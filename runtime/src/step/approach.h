@@ -2,8 +2,8 @@
 // When do two moving triangles first touch?
 #pragma once
 
-#include "skin/double3.h"
-#include "skin/exact_triangles.h"
+#include "runtime/src/base/double3.h"
+#include "runtime/src/triangles/exact_triangles.h"
 
 namespace spherechain {
 

@@ -8,13 +8,13 @@
 // S and l are linear in time. A rotation by the angle a in all has |R'| = a and |R''| = a^2 where its speed is
 // constant; as a normalised sum of quaternions that are an angle g apart, c = cos g, its speed is 2 g', with
 //   g' = sin g / D,   g'' = - sin g D' / D^2,   D = 1 - 2 t (1 - t) (1 - c)  >=  (1 + c) / 2,   |D'| <= 2 (1 - c).
-#include "step/motion.h"
+#include "runtime/src/step/motion.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "asset/status.h"
-#include "skin/scene_setup.h"
+#include "runtime/src/base/status.h"
+#include "runtime/src/clusters/set_up.h"
 
 namespace spherechain {
 namespace {

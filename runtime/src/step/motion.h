@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "pose/transform.h"
-#include "skin/double3.h"
-#include "skin/skin_table.h"
-#include "step/step_job.h"
+#include "runtime/src/base/double3.h"
+#include "runtime/src/pose/transform.h"
+#include "runtime/src/skin/skin_table.h"
+#include "runtime/src/step/step_job.h"
 
 namespace spherechain {
 

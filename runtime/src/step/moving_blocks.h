@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The triangles of a cluster that could touch a box on their way, and which pairs of them a plane parts all the time.
-#include "simd/highway.h"
+#include "runtime/src/simd/highway.h"
 
 #if defined(SPHERECHAIN_STEP_MOVING_BLOCKS_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_STEP_MOVING_BLOCKS_H
@@ -9,9 +9,9 @@
 #define SPHERECHAIN_STEP_MOVING_BLOCKS_H
 #endif
 
-#include "skin/blocks.h"
-#include "skin/single_precision.h"
-#include "step/moving_scene.h"
+#include "runtime/src/contacts/blocks.h"
+#include "runtime/src/contacts/single_precision.h"
+#include "runtime/src/step/moving_skin.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -49,8 +49,8 @@ struct MovingBlock {
 };
 
 // Where a block's triangle stands in a pose.
-HWY_INLINE TriangleCorners corners_of(const ContactScene& scene, const MovingBlock& block, std::size_t i) {
-  const Slots slots = slots_of(scene, block.cluster);
+HWY_INLINE TriangleCorners corners_of(const PosedClusters& posed, const MovingBlock& block, std::size_t i) {
+  const Slots slots = slots_of(posed, block.cluster);
   TriangleCorners out;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t slot = block.places[k][i];
@@ -59,8 +59,8 @@ HWY_INLINE TriangleCorners corners_of(const ContactScene& scene, const MovingBlo
   return out;
 }
 
-HWY_INLINE Box way_of_spans(const MovingScene& scene, std::size_t cluster, const Drift& drift, float stray) {
-  const Box start = box_of_span(scene.start, cluster), end = drift.take_from(box_of_span(scene.end, cluster), 1);
+HWY_INLINE Box way_of_spans(const MovingSkin& posed, std::size_t cluster, const Drift& drift, float stray) {
+  const Box start = box_of_span(posed.start, cluster), end = drift.take_from(box_of_span(posed.end, cluster), 1);
   Box out;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     out.low[axis] = (start.low[axis] < end.low[axis] ? start.low[axis] : end.low[axis]) - stray;
@@ -72,19 +72,19 @@ HWY_INLINE Box way_of_spans(const MovingScene& scene, std::size_t cluster, const
 // The cluster's triangles whose boxes around the way, `stray` wider, touch the box, but for what single corners tell;
 // seen along with the drift.
 // False where there are none. Those that are degenerate at one end are left out: on the way to a point all would meet.
-inline HWY_NOINLINE bool load_moving_block(const MovingScene& scene, std::size_t cluster_index, const Box& box,
+inline HWY_NOINLINE bool load_moving_block(const MovingSkin& posed, std::size_t cluster_index, const Box& box,
                                            const Drift& drift, float stray, MovingBlock& out) {
   constexpr Floats kFloats;
-  const Surface& surface = *scene.start.surface;
+  const Surface& surface = *posed.start.surface;
   const Cluster& cluster = surface.clusters.data[cluster_index];
   const std::uint8_t* corners = surface.corners.data + 3 * std::size_t{cluster.first_triangle};
   HWY_ALIGN Codes codes, codes_at_end;
-  find_sides(scene.start, cluster_index, BoxProbe(box), codes);
-  find_sides(scene.end, cluster_index, BoxProbe(drift.take_from(box, -1)), codes_at_end);
+  find_sides(posed.start, cluster_index, BoxProbe(box), codes);
+  find_sides(posed.end, cluster_index, BoxProbe(drift.take_from(box, -1)), codes_at_end);
   for (std::size_t i = 0; i < cluster.vertex_count; ++i) {
     codes[i] &= codes_at_end[i];  // beyond all the way
   }
-  const Slots slots[2] = {slots_of(scene.start, cluster_index), slots_of(scene.end, cluster_index)};
+  const Slots slots[2] = {slots_of(posed.start, cluster_index), slots_of(posed.end, cluster_index)};
   std::uint8_t last[3 * kBlock];
   if (3 * (cluster.first_triangle + kBlock) > surface.corners.size) {  // the asset's last few
     std::memset(last, 0, sizeof last);

@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "asset/memory.h"
-#include "asset/status.h"
-#include "pairs/filter.h"
-#include "simd/simd.h"
-#include "skin/collector.h"
-#include "step/motion.h"
-#include "step/step_collector.h"
-#include "step/step_job.h"
+#include "runtime/src/base/memory.h"
+#include "runtime/src/base/status.h"
+#include "runtime/src/contacts/collector.h"
+#include "runtime/src/pairs/filter.h"
+#include "runtime/src/simd/simd.h"
+#include "runtime/src/step/motion.h"
+#include "runtime/src/step/step_collector.h"
+#include "runtime/src/step/step_job.h"
 
 namespace spherechain {
 namespace {
@@ -29,7 +29,7 @@ struct Walker {
   const AssetView* asset = nullptr;
   Surface surface;
   BodyMotion way;
-  ContactScene start, end;
+  PosedClusters start, end;
   BoxColumns spheres, clusters;
   std::uint8_t* is_swept = nullptr;
   std::uint16_t* cluster_parts = nullptr;
@@ -70,7 +70,7 @@ struct Walker {
     const Span<const float> all = way.strays();
     return all.size == 0 ? 0 : double{*std::max_element(all.begin(), all.end())};
   }
-  MovingScene moving() const { return {start, end, strays, spheres, clusters, is_swept}; }
+  MovingSkin moving() const { return {start, end, strays, spheres, clusters, is_swept}; }
 };
 
 struct StepMemory {
@@ -272,12 +272,12 @@ class Step {
 
   void pose_at(double time, bool at_end) {
     const auto pose = [&](Walker& walker) {
-      ContactScene& scene = at_end ? walker.end : walker.start;
+      PosedClusters& posed = at_end ? walker.end : walker.start;
       const std::size_t side = at_end ? 1 : 0;
-      scene.has_balls = scene.has_hulls = false;
+      posed.has_balls = posed.has_hulls = false;
       set_pose(*walker.asset, walker.surface,
                walker.way.pose_at(time, walker.bones[side], walker.morph_weights[side], walker.vertices[side]),
-               job_.filter, scene);
+               job_.filter, posed);
     };
     pose(room_.a);
     if (!are_one_) {
@@ -289,7 +289,7 @@ class Step {
   // no more is asked; of a null list, of all spheres.
   void note_ends(Span<const Pair> clusters, bool at_start, StepCollector& collector) {
     constexpr std::size_t kAtATime = 16;
-    ContactScene &a = at_start ? room_.a.start : room_.a.end, &b = at_start ? b_.start : b_.end;
+    PosedClusters &a = at_start ? room_.a.start : room_.a.end, &b = at_start ? b_.start : b_.end;
     if (clusters.data == nullptr) {
       find_ends(a, b, at_start, collector);
       return;
@@ -310,7 +310,7 @@ class Step {
     a.candidate_clusters = {};
   }
 
-  void find_ends(const ContactScene& a, const ContactScene& b, bool at_start, StepCollector& collector) {
+  void find_ends(const PosedClusters& a, const PosedClusters& b, bool at_start, StepCollector& collector) {
     room_.parts.clear();
     const ContactLists lists{{}, {}, {}, false};
     ContactCollector found = are_one_ ? ContactCollector(room_.a.surface, room_.parts, lists)
@@ -329,12 +329,12 @@ class Step {
     if (!are_one_) {
       prepare(b_, share);
     }
-    const MovingScene a = room_.a.moving(), b = b_.moving();
+    const MovingSkin a = room_.a.moving(), b = b_.moving();
     const MovingBodies bodies{a, are_one_ ? a : b, are_one_};
     Span<Pair> listed{room_.spheres.data, 0};
     find_moving_spheres(resolved_, bodies, listed);
-    for (ContactScene* scene : {&room_.a.start, &room_.a.end, &b_.start, &b_.end}) {
-      scene->has_sphere_boxes = true;
+    for (PosedClusters* posed : {&room_.a.start, &room_.a.end, &b_.start, &b_.end}) {
+      posed->has_sphere_boxes = true;
     }
     const Span<const Pair> spheres{listed.data, listed.size};
     if (spheres.size == 0) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "step/step_collector.h"
+#include "runtime/src/step/step_collector.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "pairs/pair_bits.h"
-#include "simd/arithmetic.h"
+#include "runtime/src/base/arithmetic.h"
+#include "runtime/src/base/pair_bits.h"
 
 namespace spherechain {
 namespace {

@@ -2,11 +2,12 @@
 // Collects for each two body parts when they first touch in a step, and when last.
 #pragma once
 
-#include "skin/left_out.h"
-#include "skin/scene_setup.h"
-#include "step/approach.h"
-#include "step/motion.h"
-#include "step/moving_scene.h"
+#include "runtime/src/clusters/set_up.h"
+#include "runtime/src/contacts/part_table.h"
+#include "runtime/src/skin/left_out.h"
+#include "runtime/src/step/approach.h"
+#include "runtime/src/step/motion.h"
+#include "runtime/src/step/moving_skin.h"
 
 namespace spherechain {
 

@@ -2,7 +2,7 @@
 // Finds the body parts that touch on the way from one pose to the next, and when.
 #pragma once
 
-#include "skin/contact_jobs.h"
+#include "runtime/src/contacts/contact_jobs.h"
 
 namespace spherechain {
 

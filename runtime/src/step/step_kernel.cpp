@@ -5,18 +5,18 @@
 // and triangles are parted by that; what is left goes to the collector.
 #include <cstring>
 
-#include "pairs/pair_bits.h"
-#include "simd/arithmetic.h"
-#include "simd/simd.h"
-#include "step/moving_scene.h"
-#include "step/step_collector.h"
+#include "runtime/src/base/arithmetic.h"
+#include "runtime/src/base/pair_bits.h"
+#include "runtime/src/simd/simd.h"
+#include "runtime/src/step/moving_skin.h"
+#include "runtime/src/step/step_collector.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "step/step_kernel.cpp"
-#include "simd/highway.h"
-#include "skin/pair_list.h"
-#include "skin/scene_bounds.h"
-#include "step/moving_blocks.h"
+#define HWY_TARGET_INCLUDE "runtime/src/step/step_kernel.cpp"
+#include "runtime/src/clusters/bounds_on_demand.h"
+#include "runtime/src/contacts/pair_list.h"
+#include "runtime/src/simd/highway.h"
+#include "runtime/src/step/moving_blocks.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -48,9 +48,9 @@ HWY_INLINE Vector rounding_of(const BoxColumns& boxes, std::size_t i) {
   return hn::IfThenElseZero(hn::Lt(most, hn::Set(kFloats, 0x1p60F)), hn::Mul(most, hn::Set(kFloats, 0x1p-20F)));
 }
 
-HWY_NOINLINE void bound_ways(const MovingScene& scene) {
+HWY_NOINLINE void bound_ways(const MovingSkin& posed) {
   constexpr Floats kFloats;
-  for (const ContactScene* pose : {&scene.start, &scene.end}) {
+  for (const PosedClusters* pose : {&posed.start, &posed.end}) {
     if (!pose->has_sphere_boxes) {
       if (!pose->has_hulls) {
         bound_clusters(*pose, 0, pose->sphere_count);
@@ -58,27 +58,27 @@ HWY_NOINLINE void bound_ways(const MovingScene& scene) {
       bound_spheres(*pose);
     }
   }
-  const std::size_t end = scene.start.sphere_count;
+  const std::size_t end = posed.start.sphere_count;
   for (std::size_t s = 0; s < end; s += kLanes) {
-    const Vector rounding = hn::Max(rounding_of(scene.start.spheres, s), rounding_of(scene.end.spheres, s));
-    const Vector stray = hn::Add(hn::LoadU(kFloats, scene.strays + s), rounding);
-    hn::BlendedStore(stray, hn::FirstN(kFloats, end - s), kFloats, scene.strays + s);
-    sweep_boxes(scene.start.spheres, scene.end.spheres, stray, s, end, scene.spheres);
+    const Vector rounding = hn::Max(rounding_of(posed.start.spheres, s), rounding_of(posed.end.spheres, s));
+    const Vector stray = hn::Add(hn::LoadU(kFloats, posed.strays + s), rounding);
+    hn::BlendedStore(stray, hn::FirstN(kFloats, end - s), kFloats, posed.strays + s);
+    sweep_boxes(posed.start.spheres, posed.end.spheres, stray, s, end, posed.spheres);
   }
 }
 
 // Boxes of the sphere's clusters around all of the way.
-HWY_INLINE void sweep_once(const MovingScene& scene, std::size_t sphere) {
-  if (scene.is_swept[sphere] != 0) {
+HWY_INLINE void sweep_once(const MovingSkin& posed, std::size_t sphere) {
+  if (posed.is_swept[sphere] != 0) {
     return;
   }
-  scene.is_swept[sphere] = 1;
-  bound_once(scene.start, sphere);
-  bound_once(scene.end, sphere);
-  const Vector stray = hn::Set(Floats(), scene.strays[sphere]);
-  const std::size_t end = scene.start.first_cluster[sphere + 1];
-  for (std::size_t i = scene.start.first_cluster[sphere]; i < end; i += kLanes) {
-    sweep_boxes(scene.start.clusters, scene.end.clusters, stray, i, end, scene.clusters);
+  posed.is_swept[sphere] = 1;
+  bound_once(posed.start, sphere);
+  bound_once(posed.end, sphere);
+  const Vector stray = hn::Set(Floats(), posed.strays[sphere]);
+  const std::size_t end = posed.start.first_cluster[sphere + 1];
+  for (std::size_t i = posed.start.first_cluster[sphere]; i < end; i += kLanes) {
+    sweep_boxes(posed.start.clusters, posed.end.clusters, stray, i, end, posed.clusters);
   }
 }
 
@@ -144,15 +144,15 @@ HWY_INLINE float gap_along(const float (&direction)[3], const float* const (&a)[
 
 // True if one plane of constant direction separates two spheres' hulls at the start and at the end of the step. See
 // hulls_apart().
-HWY_INLINE bool hulls_stay_apart(const MovingScene& scene_a, std::size_t a, const MovingScene& scene_b, std::size_t b,
+HWY_INLINE bool hulls_stay_apart(const MovingSkin& posed_a, std::size_t a, const MovingSkin& posed_b, std::size_t b,
                                  float stray) {
   float direction[3];
-  middle_direction(box_at(scene_a.start.spheres, a), box_at(scene_a.end.spheres, a), box_at(scene_b.start.spheres, b),
-                   box_at(scene_b.end.spheres, b), direction);
+  middle_direction(box_at(posed_a.start.spheres, a), box_at(posed_a.end.spheres, a), box_at(posed_b.start.spheres, b),
+                   box_at(posed_b.end.spheres, b), direction);
   const float length = length_of(direction);
-  const Hull& hull_a = scene_a.start.surface->hulls.data[a];
-  const Hull& hull_b = scene_b.start.surface->hulls.data[b];
-  const auto is_gap = [&](const ContactScene& pose_a, const ContactScene& pose_b) HWY_ATTR {
+  const Hull& hull_a = posed_a.start.surface->hulls.data[a];
+  const Hull& hull_b = posed_b.start.surface->hulls.data[b];
+  const auto is_gap = [&](const PosedClusters& pose_a, const PosedClusters& pose_b) HWY_ATTR {
     const float* const p = pose_a.hulls + 3 * std::size_t{hull_a.first_point};
     const float* const q = pose_b.hulls + 3 * std::size_t{hull_b.first_point};
     const std::size_t m = hull_a.point_count, n = hull_b.point_count;
@@ -160,32 +160,32 @@ HWY_INLINE bool hulls_stay_apart(const MovingScene& scene_a, std::size_t a, cons
     const float margin = pose_a.hull_margins[a] + pose_b.hull_margins[b] + stray;
     return gap > length * margin * (1 + 0x1p-20F) + kMinLength;
   };
-  return is_gap(scene_a.start, scene_b.start) && is_gap(scene_a.end, scene_b.end);
+  return is_gap(posed_a.start, posed_b.start) && is_gap(posed_a.end, posed_b.end);
 }
 
 // Bit k is set if a's sphere first + k is to be paired with b's sphere b. Within one body only spheres before b are.
 HWY_INLINE std::uint64_t paired(const MovingBodies& bodies, std::size_t first, std::size_t b) {
-  const ContactScene& scene = bodies.a.start;
+  const PosedClusters& posed = bodies.a.start;
   std::uint64_t bits = ~std::uint64_t{0};
   if (bodies.are_one) {
-    bits = ~bits_at(scene.ignored.data, scene.ignored.size, ignored_bit(first, b));
+    bits = ~bits_at(posed.ignored.data, posed.ignored.size, ignored_bit(first, b));
   }
-  const std::size_t count = (bodies.are_one ? b : scene.sphere_count) - first;
+  const std::size_t count = (bodies.are_one ? b : posed.sphere_count) - first;
   return bits & (~std::uint64_t{0} >> (64 - (count < 64 ? count : 64)));
 }
 
 using SpherePairs = PairList<512>;
 
 HWY_NOINLINE void put_spheres(const MovingBodies& bodies, SpherePairs& found, Span<Pair>& pairs) {
-  const MovingScene &a_scene = bodies.a, &b_scene = bodies.b;
+  const MovingSkin &moving_a = bodies.a, &moving_b = bodies.b;
   const bool have_hulls =
-      a_scene.start.has_hulls && a_scene.end.has_hulls && b_scene.start.has_hulls && b_scene.end.has_hulls;
+      moving_a.start.has_hulls && moving_a.end.has_hulls && moving_b.start.has_hulls && moving_b.end.has_hulls;
   for (std::size_t k = 0; k < found.count; ++k) {
     const auto b = static_cast<std::size_t>(found.a[k]), a = static_cast<std::size_t>(found.b[k]);
-    const float stray = a_scene.strays[a] + b_scene.strays[b];
-    if (pass_by(box_at(a_scene.start.spheres, a), box_at(a_scene.end.spheres, a), box_at(b_scene.start.spheres, b),
-                box_at(b_scene.end.spheres, b), stray) ||
-        (have_hulls && hulls_stay_apart(a_scene, a, b_scene, b, stray))) {
+    const float stray = moving_a.strays[a] + moving_b.strays[b];
+    if (pass_by(box_at(moving_a.start.spheres, a), box_at(moving_a.end.spheres, a), box_at(moving_b.start.spheres, b),
+                box_at(moving_b.end.spheres, b), stray) ||
+        (have_hulls && hulls_stay_apart(moving_a, a, moving_b, b, stray))) {
       continue;
     }
     pairs.data[pairs.size] = {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)};
@@ -226,8 +226,8 @@ void find_spheres(const MovingBodies& bodies, Span<Pair>& pairs) {
 HWY_INLINE bool spans_stay_apart(const MovingBodies& bodies, std::size_t a, std::size_t b, float stray) {
   constexpr hn::CappedTag<float, kSpanLanes> d;
   const auto wide = hn::Set(d, stray * kRootOfTwo * (1 + 0x1p-20F));  // the diagonals' length
-  const auto span = [&](const ContactScene& scene, std::size_t cluster)
-                        HWY_ATTR { return scene.spans + 2 * kSpanLanes * cluster; };
+  const auto span = [&](const PosedClusters& posed, std::size_t cluster)
+                        HWY_ATTR { return posed.spans + 2 * kSpanLanes * cluster; };
   const float *const a0 = span(bodies.a.start, a), *const a1 = span(bodies.a.end, a),
                      *const b0 = span(bodies.b.start, b), *const b1 = span(bodies.b.end, b);
   for (std::size_t k = 0; k < kSpanLanes; k += hn::MaxLanes(d)) {
@@ -248,8 +248,8 @@ HWY_NOINLINE bool plane_stays_between(const MovingBodies& bodies, std::size_t a,
   middle_direction(box_of_span(bodies.a.start, a), box_of_span(bodies.a.end, a), box_of_span(bodies.b.start, b),
                    box_of_span(bodies.b.end, b), direction);
   const float least = length_of(direction) * stray * (1 + 0x1p-20F) + 0x1p-100F;
-  const auto is_gap = [&](const ContactScene& scene_a, const ContactScene& scene_b) HWY_ATTR {
-    const Slots p = slots_of(scene_a, a), q = slots_of(scene_b, b);
+  const auto is_gap = [&](const PosedClusters& posed_a, const PosedClusters& posed_b) HWY_ATTR {
+    const Slots p = slots_of(posed_a, a), q = slots_of(posed_b, b);
     return gap_along(direction, {p.axes[0], p.axes[1], p.axes[2]}, p.count, {q.axes[0], q.axes[1], q.axes[2]},
                      q.count) > least;
   };
@@ -301,15 +301,15 @@ HWY_NOINLINE void pair_blocks(const MovingBodies& bodies, const MovingBlock& blo
 }
 
 // Returns false if a cluster has no shape at the start or at the end.
-HWY_INLINE bool load_both(const MovingScene& scene, std::size_t cluster) {
-  const auto has_shape = [&](const ContactScene& pose) HWY_ATTR {
+HWY_INLINE bool load_both(const MovingSkin& posed, std::size_t cluster) {
+  const auto has_shape = [&](const PosedClusters& pose) HWY_ATTR {
     if (pose.is_loaded[cluster] == 0) {
       load(pose, cluster);
     }
     const Box box = box_of_span(pose, cluster);
     return box.low[0] <= box.high[0];
   };
-  return has_shape(scene.start) && has_shape(scene.end);
+  return has_shape(posed.start) && has_shape(posed.end);
 }
 
 // Returns false only if no triangles of two clusters can touch during the step.

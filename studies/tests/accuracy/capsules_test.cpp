@@ -8,9 +8,9 @@
 #include <random>
 
 #include "baked_human.h"
+#include "baker/motion/poses.h"
 #include "capsules.h"
 #include "human.h"
-#include "motion/poses.h"
 #include "temporary_folder.h"
 
 using namespace spherechain::baker;

@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <fstream>
 
+#include "baker/mesh/error.h"
 #include "csv.h"
 #include "gpu_claims.h"
 #include "gpu_time.h"
-#include "mesh/error.h"
 
 using spherechain::paper::evaluate_gpu_m1_faster;
 using spherechain::paper::evaluate_gpu_needs_many;

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "baker/play/asset_file.h"
+#include "baker/report/report.h"
 #include "csv.h"
-#include "play/asset_file.h"
-#include "report/report.h"
 
 namespace {
 

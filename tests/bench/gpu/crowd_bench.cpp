@@ -13,7 +13,7 @@
 #include "contestants.h"
 #include "device_crowd.h"
 #include "further_modes.h"
-#include "pairs/pair_bits.h"
+#include "runtime/src/base/pair_bits.h"
 #include "spherechain/cuda.h"
 
 namespace {

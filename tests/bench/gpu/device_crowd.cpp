@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "refit/refit_job.h"
+#include "runtime/src/refit/refit_job.h"
 
 namespace spherechain::bench {
 namespace {

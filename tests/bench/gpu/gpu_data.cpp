@@ -6,15 +6,15 @@
 #include <filesystem>
 #include <iostream>
 
+#include "baker/mesh/error.h"
+#include "baker/motion/clip.h"
+#include "baker/motion/poses.h"
+#include "baker/play/asset_file.h"
+#include "baker/play/play.h"
+#include "baker/write/write.h"
 #include "character.h"
-#include "mesh/error.h"
-#include "motion/clip.h"
-#include "motion/poses.h"
-#include "play/asset_file.h"
-#include "play/play.h"
 #include "pose_file.h"
-#include "refit/refit_job.h"
-#include "write/write.h"
+#include "runtime/src/refit/refit_job.h"
 
 using namespace spherechain;
 

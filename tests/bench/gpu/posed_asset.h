@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "asset/asset_view.h"
 #include "pose_file.h"
+#include "runtime/src/asset/asset_view.h"
 
 namespace spherechain::bench {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "pairs/pair_bits.h"
+#include "runtime/src/base/pair_bits.h"
 #include "tiny_asset.h"
 
 namespace spherechain::bench {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "baker/truth/intersections.h"
 #include "moving_human.h"
-#include "truth/intersections.h"
 
 using namespace spherechain;
 using namespace spherechain::test;

@@ -9,8 +9,8 @@
 #include <limits>
 #include <random>
 
-#include "skin/exact_orientation.h"
-#include "skin/exact_triangles.h"
+#include "runtime/src/triangles/exact_orientation.h"
+#include "runtime/src/triangles/exact_triangles.h"
 
 namespace {
 

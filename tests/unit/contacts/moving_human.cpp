@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "motion/capture.h"
-#include "motion/poses.h"
-#include "play/play.h"
+#include "baker/motion/capture.h"
+#include "baker/motion/poses.h"
+#include "baker/play/play.h"
 
 namespace spherechain::test {
 namespace {

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "baker/motion/motion.h"
+#include "baker/pipeline/pipeline.h"
+#include "baker/play/asset_file.h"
+#include "baker/truth/surface.h"
 #include "jobs.h"
-#include "motion/motion.h"
-#include "pipeline/pipeline.h"
-#include "play/asset_file.h"
-#include "truth/surface.h"
 
 namespace spherechain::test {
 

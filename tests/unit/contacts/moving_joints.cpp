@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "depth/distance.h"
+#include "runtime/src/depth/distance.h"
 
 namespace spherechain::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "moving_human.h"
-#include "skin/exact_triangles.h"
+#include "runtime/src/triangles/exact_triangles.h"
 
 namespace spherechain::test {
 

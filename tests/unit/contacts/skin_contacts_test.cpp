@@ -10,9 +10,9 @@
 #include <map>
 #include <set>
 
+#include "baker/truth/truth.h"
 #include "moving_human.h"
-#include "skin/exact_triangles.h"
-#include "truth/truth.h"
+#include "runtime/src/triangles/exact_triangles.h"
 
 using namespace spherechain;
 using namespace spherechain::test;

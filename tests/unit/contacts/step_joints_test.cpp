@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/decompose.h"
+#include "baker/mesh/decompose.h"
 #include "moving_joints.h"
 
 using namespace spherechain;

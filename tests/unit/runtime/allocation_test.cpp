@@ -8,7 +8,7 @@
 #include "jobs.h"
 #include "owned_filter.h"
 #include "palette.h"
-#include "pose/pose.h"
+#include "runtime/src/pose/pose.h"
 #include "tiny_skin.h"
 
 namespace spherechain::test {

@@ -10,8 +10,8 @@
 
 #include "jobs.h"
 #include "palette.h"
-#include "pose/pose.h"
 #include "random_poses.h"
+#include "runtime/src/pose/pose.h"
 #include "tiny_skin.h"
 
 namespace spherechain::test {

@@ -8,8 +8,8 @@
 #include "jobs.h"
 #include "palette.h"
 #include "random_poses.h"
-#include "skin/collector.h"
-#include "skin/scene_setup.h"
+#include "runtime/src/clusters/set_up.h"
+#include "runtime/src/contacts/collector.h"
 #include "tiny_skin.h"
 
 namespace spherechain::test {
@@ -66,7 +66,7 @@ std::vector<Matrix> bounds_pose(int number, std::mt19937& random) {
 struct Bounds {
   std::vector<std::uint64_t> words;
   WordMemory memory;
-  ContactScene scene;
+  PosedClusters scene;
   std::vector<float> bones;  // a box each
   Bounds3 body;
 

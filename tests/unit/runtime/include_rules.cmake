@@ -2,8 +2,10 @@
 # cmake -D ROOT=<repository> -P include_rules.cmake: fails on an include that runtime/, cuda/ or a stage of the baker must
 # not have.
 
-# The baker's folders. Each may include those before it and itself.
-set(stages mesh import roles segment wrap fit chains rig bind edits clusters write calibrate pipeline motion play volumes filter truth measure report
+# The folders of the runtime and of the baker. Each may include those before it and itself.
+set(rooms base simd asset pose refit pairs triangles skin clusters contacts depth penetrations step bodies crowd)
+set(room_size 15)  # files
+set(stages mesh import roles segment wrap fit chains rig bind edits clusters write calibrate pipeline motion play volumes filter truth report
   page check fix export cli)
 
 file(GLOB_RECURSE sources ${ROOT}/runtime/*.h ${ROOT}/runtime/*.cpp ${ROOT}/runtime/*.cc ${ROOT}/runtime/*.inl
@@ -25,8 +27,7 @@ function(includes_of source result)
 endfunction()
 
 # Runtime and CUDA: nothing of the baker, and no library that only the baker may use.
-list(JOIN stages "|" baker_folders)
-set(forbidden "(baker|${baker_folders}|assimp|CGAL|Eigen|fmt|nlohmann|oneapi|tbb)/|tiny_gltf|CLI/")
+set(forbidden "(baker|studies|assimp|CGAL|Eigen|fmt|nlohmann|oneapi|tbb)/|tiny_gltf|CLI/")
 foreach(source ${sources})
   includes_of(${source} all)
   foreach(included IN LISTS all)
@@ -38,21 +39,40 @@ foreach(source ${sources})
   endforeach()
 endforeach()
 
-foreach(source ${baker_sources})
-  file(RELATIVE_PATH path ${ROOT}/baker ${source})
-  string(REGEX REPLACE "/.*" "" stage ${path})
-  list(FIND stages ${stage} own)
-  if(own EQUAL -1)
-    message(FATAL_ERROR "baker/${stage} is missing in the list of stages of include_rules.cmake")
-  endif()
-  includes_of(${source} all)
-  foreach(included IN LISTS all)
-    string(REGEX REPLACE "/.*" "" other ${included})
-    list(FIND stages ${other} place)
-    if(place GREATER own)
-      refuse(${source} ${included})
+# Refuses what includes a folder of `top` that comes later in the list `order`, and folders that the list lacks.
+macro(check_order top)
+  foreach(source ${ARGN})
+    file(RELATIVE_PATH path ${ROOT}/${top} ${source})
+    string(REGEX REPLACE "/.*" "" folder ${path})
+    list(FIND order ${folder} own)
+    if(own EQUAL -1)
+      message(FATAL_ERROR "${top}/${folder} is missing in the lists of include_rules.cmake")
     endif()
+    includes_of(${source} all)
+    foreach(included IN LISTS all)
+      string(REGEX MATCH "^${top}/([^/]+)/" is_inside ${included})
+      list(FIND order "${CMAKE_MATCH_1}" place)
+      if(is_inside AND place GREATER own)
+        refuse(${source} ${included})
+      elseif(included MATCHES "^studies/")
+        refuse(${source} ${included})
+      endif()
+    endforeach()
   endforeach()
+endmacro()
+file(GLOB room_sources ${ROOT}/runtime/src/*/*.h ${ROOT}/runtime/src/*/*.cpp)
+set(order ${rooms})
+check_order(runtime/src ${room_sources})
+set(order ${stages})
+check_order(baker ${baker_sources})
+
+foreach(room ${rooms})
+  file(GLOB files ${ROOT}/runtime/src/${room}/*)
+  list(LENGTH files count)
+  if(count GREATER room_size)
+    message(NOTICE "runtime/src/${room} has ${count} files, more than ${room_size}")
+    set(found TRUE)
+  endif()
 endforeach()
 
 if(found)

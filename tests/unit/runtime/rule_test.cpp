@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The rule that makes a class of measurements, one limit at a time.
-#include "depth/rule.h"
+#include "runtime/src/penetrations/rule.h"
 
 #include <doctest/doctest.h>
 

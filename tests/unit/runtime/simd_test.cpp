@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "simd/simd.h"
+#include "runtime/src/simd/simd.h"
 
 #include <doctest/doctest.h>
 

@@ -11,7 +11,7 @@
 #include "owned_filter.h"
 #include "palette.h"
 #include "random_poses.h"
-#include "skin/exact_triangles.h"
+#include "runtime/src/triangles/exact_triangles.h"
 #include "tiny_skin.h"
 
 namespace spherechain::test {

@@ -9,9 +9,9 @@
 #include "jobs.h"
 #include "palette.h"
 #include "random_poses.h"
-#include "skin/exact_triangles.h"
-#include "step/approach.h"
-#include "step/motion.h"
+#include "runtime/src/step/approach.h"
+#include "runtime/src/step/motion.h"
+#include "runtime/src/triangles/exact_triangles.h"
 #include "tiny_skin.h"
 
 namespace spherechain::test {

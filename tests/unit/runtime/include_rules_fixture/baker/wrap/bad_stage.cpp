@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: MIT
-#include "fit/fit.h"
-#include "segment/segment.h"
+#include "baker/fit/fit.h"
+#include "baker/segment/segment.h"

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// The steps of sc_classify() that the measuring asks about before all is measured.
+#pragma once
+
+#include "runtime/src/base/status.h"
+#include "spherechain/rule.h"
+
+namespace spherechain {
+
+// SC_BAD_VALUE where a limit is no number, or the rule is of another version; null is fine.
+Status check_rule(const sc_rule* rule);
+// The depth below which two skins just touch.
+double touch_depth_of(const Rule& rule, double metre, double height);
+bool is_fold(const Rule& rule, const Measures& of);
+// Does the class depend on `swallowed`, which is the dearest to measure?
+bool depends_on_swallowed(const Rule& rule, const Measures& of);
+
+}  // namespace spherechain
