@@ -6,8 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "baker/check/class_names.h"
 #include "baker/check/json_input.h"
+#include "baker/events/class_names.h"
 #include "baker/mesh/error.h"
 #include "baker/play/asset_file.h"
 #include "baker/report/json_text.h"

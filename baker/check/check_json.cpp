@@ -2,9 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/check/formats.h"
+#include "baker/events/event_json.h"
 #include "baker/report/json_text.h"
-#include "baker/report/number_json.h"
-#include "baker/report/vec3_json.h"
 #include "baker/write/version.h"
 
 namespace spherechain::baker {
@@ -12,28 +11,18 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json event_json(const EvaluatedEvent& evaluated) {
-  const Event& event = evaluated.event;
-  ordered_json out{{"parts", event.parts},
-                   {"class", sc_penetration_class_name(event.kind)},
-                   {"from", number_json(event.from)},
-                   {"to", number_json(event.to)},
-                   {"deepest", number_json(event.deepest)},
-                   {"depth_mm", event.depth_mm},
-                   {"depth_percent", event.depth_percent},
-                   {"volume_ml", event.volume_ml >= 0 ? ordered_json(event.volume_ml) : ordered_json()},
-                   {"direction", to_json(event.direction)},
-                   {"state", state_name(evaluated.state)},
-                   {"rule", evaluated.rule.empty() ? ordered_json() : ordered_json(evaluated.rule)},
-                   {"fails", evaluated.fails}};
+ordered_json evaluated_json(const EvaluatedEvent& evaluated) {
+  ordered_json out = event_json(evaluated.event);
+  out["state"] = state_name(evaluated.state);
+  out["rule"] = evaluated.rule.empty() ? ordered_json() : ordered_json(evaluated.rule);
+  out["fails"] = evaluated.fails;
   if (evaluated.before_mm >= 0) out["known_depth_mm"] = evaluated.before_mm;
-  if (event.eye) out["camera"] = {{"target", to_json(event.point)}, {"back", to_json(*event.eye)}};
   return out;
 }
 
 ordered_json clip_json(const EvaluatedClip& clip) {
   ordered_json events = ordered_json::array();
-  for (const EvaluatedEvent& event : clip.events) events.push_back(event_json(event));
+  for (const EvaluatedEvent& event : clip.events) events.push_back(evaluated_json(event));
   ordered_json besides = ordered_json::object();
   for (const auto& [kind, count] : clip.besides) besides[sc_penetration_class_name(kind)] = count;
   ordered_json out{{"character", clip.character},   {"clip", clip.clip.clip},

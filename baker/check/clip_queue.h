@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <sys/mman.h>
-
-#include <atomic>
 #include <cstddef>
 #include <filesystem>
 #include <string>
@@ -12,7 +9,7 @@
 
 #include "baker/check/library.h"
 #include "baker/check/run.h"
-#include "baker/mesh/error.h"
+#include "baker/os/shared_counter.h"
 
 namespace spherechain::baker {
 
@@ -34,18 +31,11 @@ struct QueuedClip {
 // The clips of one character that are to be checked. Its processes take one after another: a quick one takes more.
 class ClipQueue {
  public:
-  ClipQueue(const ChosenCharacter& of, std::vector<QueuedClip> queued) : character(of), clips(std::move(queued)) {
-    void* shared = ::mmap(nullptr, sizeof(Next), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (shared == MAP_FAILED) throw Error(ExitCode::kFile, "--jobs: no memory that processes share");
-    next_ = new (shared) Next(0);
-  }
-  ~ClipQueue() { ::munmap(next_, sizeof(Next)); }
-  ClipQueue(const ClipQueue&) = delete;
-  ClipQueue& operator=(const ClipQueue&) = delete;
+  ClipQueue(const ChosenCharacter& of, std::vector<QueuedClip> queued) : character(of), clips(std::move(queued)) {}
 
-  bool is_empty() const { return *next_ >= clips.size(); }
+  bool is_empty() const { return next_.value() >= clips.size(); }
   // The index of the next clip. At least the number of clips if all are taken.
-  std::size_t take() { return (*next_)++; }
+  std::size_t take() { return next_.take(); }
 
   // The file that a clip is read from.
   const std::filesystem::path& file_of(const QueuedClip& queued) const {
@@ -56,9 +46,7 @@ class ClipQueue {
   const std::vector<QueuedClip> clips;
 
  private:
-  using Next = std::atomic<std::size_t>;
-  static_assert(Next::is_always_lock_free);
-  Next* next_;
+  SharedCounter next_;
 };
 
 }  // namespace spherechain::baker

@@ -5,9 +5,9 @@
 
 #include "baker/check/clip_check.h"
 #include "baker/check/file_hash.h"
-#include "baker/import/child_process.h"
 #include "baker/import/notes.h"
 #include "baker/mesh/error.h"
+#include "baker/os/child_process.h"
 #include "baker/page/page.h"
 #include "baker/play/steps.h"
 #include "baker/play/target.h"

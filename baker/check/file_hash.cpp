@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "baker/import/child_process.h"
 #include "baker/import/import.h"
-#include "baker/import/sha256.h"
+#include "baker/os/child_process.h"
+#include "baker/os/sha256.h"
 
 namespace spherechain::baker {
 

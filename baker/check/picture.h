@@ -29,6 +29,7 @@ class Picture {
   // `positions` of the source vertices. Both hold until the next call.
   void pose(const std::vector<Vec3>& positions);
 
+  const Vec3& forward() const { return axes_.forward; }
   const Vec3& position(Index vertex) const { return positions_[vertex]; }
 
   // The direction from the patches to an eye that sees most of both and the way out from the side; from the front where

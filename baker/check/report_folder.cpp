@@ -10,13 +10,13 @@
 #include <set>
 
 #include "baker/check/formats.h"
+#include "baker/check/heat.h"
+#include "baker/events/event_json.h"
 #include "baker/mesh/error.h"
+#include "baker/os/own_folder.h"
 #include "baker/page/base64.h"
 #include "baker/play/asset_file.h"
 #include "baker/report/json_text.h"
-#include "baker/report/number_json.h"
-#include "baker/report/vec3_json.h"
-#include "baker/write/own_folder.h"
 
 namespace spherechain::baker {
 namespace {
@@ -42,20 +42,17 @@ std::string strip(const EvaluatedClip& clip) {
   return base64(out);
 }
 
+// An event as the page has it: in letters that are few, for a library has many.
 ordered_json page_event(const EvaluatedEvent& evaluated) {
   const Event& event = evaluated.event;
-  ordered_json out{{"parts", event.parts},
-                   {"text", parts_text(event)},
-                   {"class", sc_penetration_class_name(event.kind)},
-                   {"from", number_json(event.from)},
-                   {"to", number_json(event.to)},
-                   {"deepest", number_json(event.deepest)},
-                   {"place", event.place},
-                   {"mm", std::round(1000 * event.depth_mm) / 1000},
-                   {"state", state_name(evaluated.state)},
-                   {"fails", evaluated.fails}};
-  if (event.volume_ml >= 0) out["ml"] = std::round(10 * event.volume_ml) / 10;
-  if (event.eye) out["camera"] = {{"target", to_json(event.point)}, {"back", to_json(*event.eye)}};
+  ordered_json out = event_json(event);
+  for (const char* key : {"depth_percent", "direction", "volume_ml"}) out.erase(key);
+  out["depth_mm"] = std::round(1000 * event.depth_mm) / 1000;
+  if (event.volume_ml >= 0) out["volume_ml"] = std::round(10 * event.volume_ml) / 10;
+  out["text"] = parts_text(event);
+  out["place"] = event.place;
+  out["state"] = state_name(evaluated.state);
+  out["fails"] = evaluated.fails;
   if (!evaluated.rule.empty()) out["rule"] = evaluated.rule;
   if (evaluated.before_mm >= 0) out["before"] = evaluated.before_mm;
   return out;

@@ -12,11 +12,11 @@
 #include "baker/check/clip_queue.h"
 #include "baker/check/clip_worker.h"
 #include "baker/check/file_hash.h"
-#include "baker/import/child_process.h"
 #include "baker/import/notes.h"
-#include "baker/import/sha256.h"
 #include "baker/mesh/error.h"
 #include "baker/mesh/utf8.h"
+#include "baker/os/child_process.h"
+#include "baker/os/sha256.h"
 #include "baker/report/report.h"
 
 namespace spherechain::baker {

@@ -9,10 +9,10 @@
 #include <set>
 
 #include "baker/mesh/error.h"
+#include "baker/os/written_file.h"
 #include "baker/play/asset_file.h"
 #include "baker/report/json_text.h"
 #include "baker/write/version.h"
-#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

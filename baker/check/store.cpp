@@ -4,10 +4,10 @@
 #include <fstream>
 #include <sstream>
 
-#include "baker/import/sha256.h"
 #include "baker/mesh/error.h"
+#include "baker/os/sha256.h"
+#include "baker/os/written_file.h"
 #include "baker/write/version.h"
-#include "baker/write/write.h"
 
 namespace spherechain::baker {
 

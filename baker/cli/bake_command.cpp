@@ -5,11 +5,11 @@
 #include "baker/cli/console.h"
 #include "baker/cli/outputs.h"
 #include "baker/cli/progress.h"
+#include "baker/os/written_file.h"
 #include "baker/pipeline/pipeline.h"
 #include "baker/play/asset_file.h"
 #include "baker/report/preview.h"
 #include "baker/report/report.h"
-#include "baker/write/write.h"
 
 namespace spherechain::baker {
 

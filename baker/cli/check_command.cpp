@@ -17,9 +17,9 @@
 #include "baker/cli/progress.h"
 #include "baker/fix/fix_library.h"
 #include "baker/import/notes.h"
+#include "baker/os/work_folder.h"
+#include "baker/os/written_file.h"
 #include "baker/play/asset_file.h"
-#include "baker/write/work_folder.h"
-#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

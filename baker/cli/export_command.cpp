@@ -13,11 +13,11 @@
 #include "baker/export/ignore_by_filter.h"
 #include "baker/import/import.h"
 #include "baker/mesh/error.h"
+#include "baker/os/written_file.h"
 #include "baker/pipeline/pipeline.h"
 #include "baker/report/report.h"
 #include "baker/volumes/fit_volumes.h"
 #include "baker/volumes/measure.h"
-#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

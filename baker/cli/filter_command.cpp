@@ -12,8 +12,8 @@
 #include "baker/filter/confidence.h"
 #include "baker/filter/find_filter.h"
 #include "baker/filter/joint_limits.h"
+#include "baker/os/written_file.h"
 #include "baker/play/target.h"
-#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

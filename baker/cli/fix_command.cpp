@@ -14,9 +14,9 @@
 #include "baker/fix/fix_character.h"
 #include "baker/motion/capture.h"
 #include "baker/motion/sequence.h"
+#include "baker/os/own_folder.h"
+#include "baker/os/written_file.h"
 #include "baker/page/page_of_two.h"
-#include "baker/write/own_folder.h"
-#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // spherechain: the command line tool. README.md has the contract.
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -15,6 +11,7 @@
 #include "baker/cli/commands.h"
 #include "baker/cli/console.h"
 #include "baker/import/notes.h"
+#include "baker/os/terminal.h"
 #include "baker/pipeline/pipeline.h"
 #include "baker/play/target.h"
 #include "baker/volumes/fit_volumes.h"
@@ -122,21 +119,11 @@ CLI::Option* add_volumes(CLI::App& command, std::string& volumes, int& at_most, 
       ->check(CLI::Range(1, 10000));
 }
 
-// The next file that is opened would else become a standard stream that is closed, and get what is printed.
-void open_standard_streams() {
-  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    if (::fcntl(stream, F_GETFD) == -1 && errno == EBADF) {
-      // Printing then fails, so that lost output is not taken for success.
-      static_cast<void>(::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY));
-    }
-  }
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   open_standard_streams();
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is one that cannot be written
+  ignore_file_size_signal();
   CLI::App app{"Self-collision of animated characters by sphere chains."};
   app.name("spherechain");
   app.set_version_flag("--version", std::string("spherechain ") + kVersion + "\ntargets: " + supported_targets_text());

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "baker/cli/outputs.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 
 #include "baker/mesh/error.h"
 #include "baker/motion/poses.h"
 #include "baker/motion/sequence.h"
+#include "baker/os/access.h"
+#include "baker/os/written_file.h"
 #include "baker/play/play.h"
-#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {
@@ -25,14 +22,13 @@ void check_folder(const std::string& file, const fs::path& place) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) throw Error(ExitCode::kFile, file + ": cannot be written (it is a folder)");
   if (is_written_directly(file)) return;
-  if (fs::exists(place, ignored) && ::access(place.c_str(), W_OK) != 0) {
-    throw Error(ExitCode::kFile, file + ": cannot be replaced (" + std::strerror(errno) + ")");
-  }
+  const std::error_code failure = fs::exists(place, ignored) ? check_writable(place) : std::error_code();
+  if (failure) throw Error(ExitCode::kFile, file + ": cannot be replaced (" + failure.message() + ")");
   const fs::path folder = fs::absolute(place, ignored).parent_path();
   if (!fs::is_directory(folder, ignored)) {
     throw Error(ExitCode::kFile, file + ": cannot be created (there is no folder " + folder.string() + ")");
   }
-  if (::access(folder.c_str(), W_OK) != 0) {
+  if (check_writable(folder)) {
     throw Error(ExitCode::kFile, file + ": cannot be created (the folder " + folder.string() + " is not writable)");
   }
 }

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "baker/cli/progress.h"
 
-#include <unistd.h>
-
 #include <chrono>
 #include <cstdio>
 
 #include "baker/cli/console.h"
+#include "baker/os/terminal.h"
 
 namespace spherechain::baker {
 
-Progress::Progress(std::string title) : title_(std::move(title)), terminal_(::isatty(STDERR_FILENO) == 1) {
+Progress::Progress(std::string title) : title_(std::move(title)), terminal_(is_error_stream_terminal()) {
   if (terminal_) return;
   std::unique_lock lock(mutex_);
   writer_ = std::thread([this] { write_lines(); });

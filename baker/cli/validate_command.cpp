@@ -6,11 +6,11 @@
 #include "baker/cli/console.h"
 #include "baker/cli/outputs.h"
 #include "baker/cli/progress.h"
+#include "baker/os/written_file.h"
 #include "baker/play/target.h"
 #include "baker/report/validation.h"
 #include "baker/truth/truth_cache.h"
 #include "baker/truth/validate.h"
-#include "baker/write/write.h"
 
 namespace spherechain::baker {
 

@@ -11,11 +11,11 @@
 #include "baker/cli/outputs.h"
 #include "baker/cli/progress.h"
 #include "baker/export/ignore_by_filter.h"
+#include "baker/os/written_file.h"
 #include "baker/page/page.h"
 #include "baker/page/page_inputs.h"
 #include "baker/page/page_of_two.h"
 #include "baker/volumes/fit_volumes.h"
-#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "baker/filter/find_filter.h"
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <climits>
+#include <optional>
 
 #include "baker/filter/confidence.h"
+#include "baker/os/parallel.h"
 
 namespace spherechain::baker {
 
@@ -25,14 +24,16 @@ FilterSearch::FilterSearch(const AnimatedAsset& animated, Target target)
 void FilterSearch::look(int count, const std::function<Deformation(int)>& pose, const Progress& progress,
                         Tally& tally) const {
   constexpr int kBlock = 256;
-  tbb::enumerable_thread_specific<TouchingParts> finders([&] { return TouchingParts(animated_, skin_, target_); });
+  std::vector<std::optional<TouchingParts>> finders(thread_count());
   std::vector<std::vector<bool>> touching(kBlock);
   for (int start = 0; start < count; start += kBlock) {
     const int end = std::min(count, start + kBlock);
-    tbb::parallel_for(start, end, [&](int i) {
-      std::vector<bool>& pairs = touching[static_cast<std::size_t>(i - start)];
+    run_parallel(static_cast<std::size_t>(end - start), [&](std::size_t thread, std::size_t i) {
+      std::vector<bool>& pairs = touching[i];
       pairs.assign(pair_count(), false);
-      for (const PartContact& contact : finders.local().find(pose(i))) {
+      std::optional<TouchingParts>& finder = finders[thread];
+      if (!finder) finder.emplace(animated_, skin_, target_);
+      for (const PartContact& contact : finder->find(pose(start + static_cast<int>(i)))) {
         const std::size_t a = contact.part_a, b = contact.part_b;
         if (a != b) pairs[a * (2 * parts_ - a - 1) / 2 + (b - a - 1)] = true;
       }

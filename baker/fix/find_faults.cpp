@@ -2,9 +2,8 @@
 #include "baker/fix/find_faults.h"
 
 #include <algorithm>
-#include <exception>
-#include <thread>
 
+#include "baker/os/parallel.h"
 #include "baker/play/target.h"
 
 namespace spherechain::baker {
@@ -12,32 +11,11 @@ namespace {
 
 constexpr double kSame = 2e-4;  // radians: smaller turns need no new measurement
 
-// Calls work(thread, i) for all i, neighbours on one thread.
-template <typename Work>
-void on_threads(std::size_t threads, std::size_t count, const Work& work) {
-  std::vector<std::exception_ptr> failures(threads);
-  const auto run = [&](std::size_t t) {
-    try {
-      for (std::size_t i = t * count / threads; i < (t + 1) * count / threads; ++i) work(t, i);
-    } catch (...) {
-      failures[t] = std::current_exception();
-    }
-  };
-  std::vector<std::thread> others;
-  for (std::size_t t = 1; t < threads; ++t) others.emplace_back(run, t);
-  run(0);
-  for (std::thread& thread : others) thread.join();
-  for (const std::exception_ptr& failure : failures) {
-    if (failure) std::rethrow_exception(failure);
-  }
-}
-
 }  // namespace
 
 FaultFinder::FaultFinder(const AnimatedAsset& animated, const TurnedClip& clip) : animated_(animated), clip_(clip) {
   leave_out({});
-  const std::size_t threads = std::clamp(std::thread::hardware_concurrency(), 1U, 16U);
-  for (std::size_t t = 0; t < threads; ++t) {
+  for (std::size_t t = 0; t < thread_count(); ++t) {
     players_.emplace_back(animated.asset(), choose_target("auto"));
     steps_.emplace_back(animated, choose_target("auto"));
   }
@@ -96,8 +74,7 @@ std::vector<PosePenetration> FaultFinder::in_frames(const std::vector<double>& f
   for (const double frame : frames) now.emplace_back(frame, clip_.turns_at(frame, turns));
   const std::vector<double> again = changed(seen_, now);
   std::vector<std::vector<PosePenetration>> found(again.size());
-  on_threads(players_.size(), again.size(),
-             [&](std::size_t t, std::size_t i) { found[i] = look(players_[t], again[i], turns); });
+  run_parallel(again.size(), [&](std::size_t t, std::size_t i) { found[i] = look(players_[t], again[i], turns); });
   for (std::size_t i = 0; i < again.size(); ++i) seen_[again[i]].found = std::move(found[i]);
   return found_in(seen_, frames);
 }
@@ -108,7 +85,7 @@ std::vector<std::vector<PosePenetration>> FaultFinder::in_poses(const std::vecto
   const PartPairBits asked = part_pairs(animated_.asset(), [&](std::uint32_t a, std::uint32_t b) {
     return a != b && (moves[a] != 0 || moves[b] != 0) && !left_out_.contains({a, b});
   });
-  on_threads(players_.size(), poses.size(), [&](std::size_t t, std::size_t i) {
+  run_parallel(poses.size(), [&](std::size_t t, std::size_t i) {
     const BonePose bones(animated_.asset(), clip_.pose_of(poses[i].frame, poses[i].turns).deformation);
     players_[t].set_pose(bones.pose());
     for (const Penetration& one : players_[t].measure_quickly(&asked)) {
@@ -144,8 +121,8 @@ std::vector<PosePenetration> FaultFinder::between(const std::vector<int>& frames
   }
   const std::vector<double> again = changed(seen_between_, now);
   std::vector<std::vector<PosePenetration>> found(again.size());
-  on_threads(players_.size(), again.size(),
-             [&](std::size_t t, std::size_t i) { found[i] = look_after(t, static_cast<int>(again[i]), turns); });
+  run_parallel(again.size(),
+               [&](std::size_t t, std::size_t i) { found[i] = look_after(t, static_cast<int>(again[i]), turns); });
   for (std::size_t i = 0; i < again.size(); ++i) seen_between_[again[i]].found = std::move(found[i]);
   return found_in(seen_between_, frames);
 }

@@ -9,8 +9,8 @@
 #include "baker/check/workers.h"
 #include "baker/fix/fix_character.h"
 #include "baker/mesh/error.h"
+#include "baker/os/written_file.h"
 #include "baker/write/own_file.h"
-#include "baker/write/write.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "baker/check/events.h"
+#include "baker/events/join_events.h"
 
 namespace spherechain::baker {
 namespace {

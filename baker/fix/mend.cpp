@@ -12,7 +12,6 @@
 #include <numbers>
 #include <set>
 
-#include "baker/check/clip_check.h"
 #include "baker/fix/constraints.h"
 #include "baker/fix/find_faults.h"
 #include "baker/fix/goals.h"
@@ -23,6 +22,7 @@
 #include "baker/fix/solve.h"
 #include "baker/fix/time_windows.h"
 #include "baker/fix/ways_out.h"
+#include "baker/motion/same_pose.h"
 
 namespace spherechain::baker {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "baker/check/events.h"
+#include "baker/events/join_events.h"
 #include "baker/fix/compare.h"
 #include "baker/fix/turned_clip.h"
 #include "baker/play/play.h"

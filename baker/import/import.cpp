@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "baker/import/import.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <system_error>
 
@@ -17,8 +13,9 @@
 #include "baker/import/obj_file.h"
 #include "baker/import/read_bvh.h"
 #include "baker/import/read_in_child.h"
-#include "baker/import/sha256.h"
 #include "baker/mesh/error.h"
+#include "baker/os/access.h"
+#include "baker/os/sha256.h"
 
 namespace spherechain::baker {
 namespace {
@@ -96,7 +93,7 @@ void check_regular_file(const std::filesystem::path& path) {
   if (status.type() == std::filesystem::file_type::none) fail("cannot be read (" + error.message() + ")");
   if (std::filesystem::is_directory(status)) fail("is a folder, not a file");
   if (!std::filesystem::is_regular_file(status)) fail("is a pipe or a device, not a file");
-  if (::access(path.c_str(), R_OK) != 0) fail(std::string("cannot be read (") + std::strerror(errno) + ")");
+  if (const std::error_code failure = check_readable(path)) fail("cannot be read (" + failure.message() + ")");
 }
 
 std::vector<std::filesystem::path> files_beside(const std::filesystem::path& source) {

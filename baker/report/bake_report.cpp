@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "baker/os/child_process.h"
 #include "baker/report/json_text.h"
 #include "baker/report/report.h"
 #include "baker/report/vec3_json.h"
@@ -284,12 +283,6 @@ std::string figures_line(const FitQuality& quality) {
 }
 
 }  // namespace
-
-double peak_memory_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
-}
 
 std::string bake_report_json(const Bake& bake) {
   ordered_json stages = ordered_json::array();

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 
+#include "baker/os/atomic_file.h"
 #include "baker/play/play.h"
 #include "baker/play/player.h"
 #include "baker/report/part_contacts.h"
-#include "baker/write/atomic_file.h"
 
 namespace spherechain::baker {
 

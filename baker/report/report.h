@@ -39,7 +39,4 @@ const char* refit_name(spherechain::RefitRule rule);
 std::string roles_text(const SourceRig& rig, const Roles& roles);
 std::string roles_json(const SourceRig& rig, const Roles& roles);
 
-// The process's peak resident memory so far.
-double peak_memory_mb();
-
 }  // namespace spherechain::baker

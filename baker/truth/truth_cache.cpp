@@ -8,8 +8,8 @@
 #include <optional>
 #include <string_view>
 
-#include "baker/import/sha256.h"
-#include "baker/write/temporary.h"
+#include "baker/os/sha256.h"
+#include "baker/os/temporary.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "baker/truth/validate.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <iterator>
 #include <map>
@@ -11,6 +9,7 @@
 #include <set>
 
 #include "baker/mesh/error.h"
+#include "baker/os/parallel.h"
 #include "baker/play/player.h"
 #include "baker/truth/far_parts.h"
 #include "baker/truth/missed_depth.h"
@@ -115,8 +114,8 @@ Validation validate(const AnimatedAsset& animated, const ValidateSettings& setti
   std::vector<Frame> frames(static_cast<std::size_t>(animated.frame_count()));
   std::mutex mutex;
   int done = 0;
-  tbb::parallel_for(0, animated.frame_count(), [&](int i) {
-    frames[static_cast<std::size_t>(i)] = validate_frame(context, i, observe);
+  run_parallel(frames.size(), [&](std::size_t, std::size_t i) {
+    frames[i] = validate_frame(context, static_cast<int>(i), observe);
     const std::lock_guard lock(mutex);
     progress(++done);
   });

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "baker/write/write.h"
+#include "baker/os/written_file.h"
 
 namespace spherechain::baker {
 namespace {

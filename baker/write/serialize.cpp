@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
-#include "baker/import/sha256.h"
 #include "baker/mesh/error.h"
+#include "baker/os/sha256.h"
 #include "baker/write/moment_tables.h"
 #include "baker/write/rest_contacts.h"
 #include "baker/write/schema_values.h"

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "baker/mesh/error.h"
-#include "baker/write/write.h"
+#include "baker/os/written_file.h"
 #include "report.h"
 #include "tree_time.h"
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "baker/write/write.h"
+#include "baker/os/written_file.h"
 #include "figures.h"
 #include "spherechain/types.h"
 #include "tree_claims.h"

@@ -14,8 +14,8 @@
 #include "baker/check/run.h"
 #include "baker/check/store.h"
 #include "baker/check/verdict.h"
-#include "baker/import/child_process.h"
 #include "baker/mesh/error.h"
+#include "baker/os/child_process.h"
 #include "planted_library.h"
 #include "tool.h"
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <doctest/doctest.h>
-#include <tbb/global_control.h>
+#include <sched.h>
 
 #include "baked_human.h"
+#include "baker/os/parallel.h"
 #include "baker/report/validation.h"
 #include "baker/truth/groups.h"
 #include "baker/truth/validate.h"
@@ -49,8 +50,7 @@ TEST_CASE("a validation is the same with one thread and with many") {
   const std::string asset = folder.write("human.sphc", std::string(bake.asset.begin(), bake.asset.end())).string();
   const AnimatedAsset animated(asset, kHumanFile,
                                {std::string(SPHERECHAIN_SAMPLES) + "/poses/arms_crossed.json", {}, {}}, {4, 30});
-  const auto run = [&](std::size_t threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+  const auto run = [&] {
     int last = 0;
     const Validation found = validate(animated, {}, [&](int done) {
       CHECK(done == last + 1);
@@ -59,6 +59,14 @@ TEST_CASE("a validation is the same with one thread and with many") {
     CHECK(last == 4);
     return validation_json(found, animated, {});
   };
-  const std::string one = run(1);
-  CHECK(run(4) == one);
+  cpu_set_t all, one;
+  REQUIRE(sched_getaffinity(0, sizeof all, &all) == 0);
+  CPU_ZERO(&one);
+  CPU_SET(sched_getcpu(), &one);
+  const std::string with_many = run();
+  REQUIRE(sched_setaffinity(0, sizeof one, &one) == 0);
+  CHECK(thread_count() == 1);
+  const std::string with_one = run();
+  sched_setaffinity(0, sizeof all, &all);
+  CHECK(with_one == with_many);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files that are whole or not there, whatever ends the program.
-#include "baker/write/write.h"
+#include "baker/os/written_file.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 #include <set>
 
 #include "baker/mesh/error.h"
-#include "baker/write/atomic_file.h"
+#include "baker/os/atomic_file.h"
 #include "human.h"
 #include "temporary_folder.h"
 #include "tool.h"

@@ -65,9 +65,9 @@ export function fillEvents(panel, { rows, row, fit, model, store, flyToContact }
         'button',
         { type: 'button', class: 'pair event', 'aria-pressed': `${index === chosen}`, disabled: gone, onclick: () => go(index) },
         h('span', { class: 'part-names' }, event.text),
-        h('span', { class: 'count' }, millimetres(event.mm)),
+        h('span', { class: 'count' }, millimetres(event.depth_mm)),
         h('span', { class: 'when' }, `${frames}${event.from === event.to ? '' : `, worst at ${event.deepest}`} (${timecode(event.deepest, row.fps)})`),
-        h('span', { class: `when ${event.fails && !isAccepted(row, event) ? 'warning' : ''}` }, `${CLASSES[event.class] ?? event.class}, ${state(event)}${event.ml === undefined ? '' : `, ${event.ml} ml`}`),
+        h('span', { class: `when ${event.fails && !isAccepted(row, event) ? 'warning' : ''}` }, `${CLASSES[event.class] ?? event.class}, ${state(event)}${event.volume_ml === undefined ? '' : `, ${event.volume_ml} ml`}`),
       ),
       index === chosen && isFault(event) && !event.rule && event.state !== 'accepted' &&
         h('button', { type: 'button', class: 'accept', onclick: () => { toggleAccepted(row, event); draw(); } }, isAccepted(row, event) ? 'Accepted: take back (A)' : 'Accept (A)'),

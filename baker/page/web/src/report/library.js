@@ -15,7 +15,7 @@ const millimetres = (mm) => (mm < 9.95 ? mm.toFixed(1) : `${Math.round(mm)}`);
 function digest(row, index) {
   const events = (row.events ?? []).filter((event) => event.state !== 'resolved');
   const open = events.filter((event) => isFault(event) && !event.rule);
-  const worst = [...open].sort((a, b) => (b.class === 'penetration') - (a.class === 'penetration') || b.mm - a.mm)[0];
+  const worst = [...open].sort((a, b) => (b.class === 'penetration') - (a.class === 'penetration') || b.depth_mm - a.depth_mm)[0];
   return {
     ...row,
     index,
@@ -25,7 +25,7 @@ function digest(row, index) {
     faults: open.length,
     fresh: open.filter((event) => event.state === 'new' && !isAccepted(row, event)).length,
     accepted: open.filter((event) => isAccepted(row, event)).length,
-    mm: worst?.mm ?? 0,
+    mm: worst?.depth_mm ?? 0,
     words: `${row.character} ${row.clip} ${open.map(({ parts }) => parts.join(' ')).join(' ')} ${row.error ?? ''}`.toLowerCase(),
   };
 }

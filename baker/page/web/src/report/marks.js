@@ -46,7 +46,7 @@ export function baseline(rows) {
         class: event.class,
         from_seconds: event.from / row.fps,
         to_seconds: event.to / row.fps,
-        depth_mm: event.mm,
+        depth_mm: event.depth_mm,
         state: isAccepted(row, event) ? 'accepted' : 'known',
       })),
   );

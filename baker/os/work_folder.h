@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <sys/types.h>
-
 #include <filesystem>
+#include <optional>
 #include <vector>
+
+#include "baker/os/child_process.h"
 
 namespace spherechain::baker {
 
@@ -25,8 +26,7 @@ class WorkFolder {
   void stop_deleter();
 
   std::filesystem::path path_;
-  pid_t deleter_ = -1;
-  int alive_ = -1;  // the deleter reads the other end
+  std::optional<ChildProcess> deleter_;
   int lock_ = -1;
 };
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "baker/write/temporary.h"
+#include "baker/os/temporary.h"
 
 namespace spherechain::baker {
 

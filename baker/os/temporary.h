@@ -32,7 +32,4 @@ class Temporary {
   int file_ = -1;
 };
 
-// Writes all of `bytes` to a descriptor. Returns false and sets errno on failure.
-bool write_all(int file, std::string_view bytes);
-
 }  // namespace spherechain::baker

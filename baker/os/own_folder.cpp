@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "baker/write/own_folder.h"
+#include "baker/os/own_folder.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -9,11 +9,13 @@
 #include <cstring>
 #include <fstream>
 
-#include "baker/import/sha256.h"
 #include "baker/mesh/error.h"
-#include "baker/write/leftovers.h"
-#include "baker/write/temporary.h"
-#include "baker/write/write.h"
+#include "baker/os/access.h"
+#include "baker/os/leftovers.h"
+#include "baker/os/sha256.h"
+#include "baker/os/temporary.h"
+#include "baker/os/write_all.h"
+#include "baker/os/written_file.h"
 
 namespace spherechain::baker {
 namespace {
@@ -58,7 +60,7 @@ bool is_empty_file(const fs::path& file) {
 }
 
 // The folder, or the first above it that is there, must take new files.
-void check_writable(const fs::path& folder) {
+void check_folder(const fs::path& folder) {
   std::error_code error;
   fs::path there = fs::absolute(folder, error).lexically_normal();
   while (!fs::exists(there, error) && there.has_relative_path()) {
@@ -69,7 +71,7 @@ void check_writable(const fs::path& folder) {
     fail(folder,
          fs::exists(folder, error) ? "is no folder" : "cannot be created (" + there.string() + " is no folder)");
   }
-  if (::access(there.c_str(), W_OK | X_OK) != 0) {
+  if (check_takes_files(there)) {
     fail(folder, "cannot be written (the folder " + there.string() + " is not writable)");
   }
 }
@@ -102,7 +104,7 @@ bool OwnFolder::is_listed(const Hashes& list, const std::string& name, const std
 }
 
 void OwnFolder::check(const fs::path& folder, const std::string& kind, bool (*is_name)(const std::string& name)) {
-  check_writable(folder);
+  check_folder(folder);
   const Hashes list = read_list(folder, kind);
   std::error_code error;
   if (!fs::exists(folder, error)) return;

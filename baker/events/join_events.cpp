@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "baker/check/events.h"
+#include "baker/events/join_events.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "baker/write/atomic_file.h"
+#include "baker/os/atomic_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -9,7 +9,8 @@
 #include <cstring>
 
 #include "baker/mesh/error.h"
-#include "baker/write/write.h"
+#include "baker/os/write_all.h"
+#include "baker/os/written_file.h"
 
 namespace spherechain::baker {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "baker/import/sha256.h"
+#include "baker/os/sha256.h"
 
 #include <openssl/evp.h>
 

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "baker/write/work_folder.h"
+#include "baker/os/work_folder.h"
 
 #include <fcntl.h>
-#include <signal.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "baker/mesh/error.h"
-#include "baker/write/leftovers.h"
+#include "baker/os/leftovers.h"
 
 namespace spherechain::baker {
 namespace {
@@ -34,17 +33,12 @@ std::vector<fs::path> missing(const fs::path& folder) {
 }
 
 // The pipe ends with the last process that has its other end: with the tool and its workers.
-[[noreturn]] void delete_at_end(int pipe, const fs::path& folder, const std::vector<fs::path>& made) {
-  ::setsid();  // Ctrl-C is for others
-  for (const int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGPIPE}) ::signal(signal, SIG_IGN);
-  const int nowhere = ::open("/dev/null", O_RDWR);  // who reads the tool's output does not wait for this
-  for (int file = 0; file < 3; ++file) ::dup2(nowhere, file);
+void delete_at_end(int pipe, const fs::path& folder, const std::vector<fs::path>& made) {
   char none = 0;
   while (::read(pipe, &none, 1) < 0 && errno == EINTR) continue;
   std::error_code ignored;
   fs::remove_all(folder, ignored);
   for (const fs::path& one : made) ::rmdir(one.c_str());
-  ::_exit(0);
 }
 
 }  // namespace
@@ -66,22 +60,17 @@ WorkFolder::WorkFolder(const fs::path& in) {
 }
 
 void WorkFolder::start_deleter(const std::vector<fs::path>& made) {
-  int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) fail_to_create(path_, std::strerror(errno));
-  deleter_ = ::fork();
-  if (deleter_ == 0) {
-    ::close(ends[1]);
-    delete_at_end(ends[0], path_, made);
+  try {
+    deleter_.emplace(ChildProcess::Kind::kWatchman, [&](int pipe) { delete_at_end(pipe, path_, made); });
+  } catch (const std::system_error& error) {
+    fail_to_create(path_, error.code().message());
   }
-  ::close(ends[0]);
-  alive_ = ends[1];
-  if (deleter_ < 0) fail_to_create(path_, std::strerror(errno));
 }
 
 void WorkFolder::stop_deleter() {
-  ::close(alive_);
   if (lock_ >= 0) ::close(lock_);
-  while (::waitpid(deleter_, nullptr, 0) < 0 && errno == EINTR) continue;
+  lock_ = -1;
+  deleter_.reset();
 }
 
 WorkFolder::~WorkFolder() { stop_deleter(); }

@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "baker/mesh/error.h"
-#include "baker/write/atomic_file.h"
-#include "baker/write/write.h"
+#include "baker/os/atomic_file.h"
+#include "baker/os/written_file.h"
 
 namespace spherechain::baker {
 

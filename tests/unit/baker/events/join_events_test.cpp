@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Meetings of body parts joined over frames, what a baseline takes for the same, and how names reach JUnit.
-#include "baker/check/events.h"
+#include "baker/events/join_events.h"
 
 #include <doctest/doctest.h>
 

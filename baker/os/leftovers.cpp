@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "baker/write/leftovers.h"
+#include "baker/os/leftovers.h"
 
 #include <fcntl.h>
 #include <sys/file.h>

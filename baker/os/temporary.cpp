@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "baker/write/temporary.h"
+#include "baker/os/temporary.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -14,7 +14,8 @@
 #include <set>
 #include <string>
 
-#include "baker/write/leftovers.h"
+#include "baker/os/leftovers.h"
+#include "baker/os/write_all.h"
 
 namespace spherechain::baker {
 namespace {
@@ -134,16 +135,6 @@ bool Temporary::rename_to_target() {
   const int file = file_;
   file_ = -1;
   return ::close(file) == 0;
-}
-
-bool write_all(int file, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ::ssize_t n = ::write(file, bytes.data(), bytes.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(n));
-  }
-  return true;
 }
 
 }  // namespace spherechain::baker

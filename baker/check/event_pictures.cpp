@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "baker/check/event_pictures.h"
+
+#include <map>
+#include <tuple>
+
+namespace spherechain::baker {
+
+std::vector<std::string> draw_events(const AnimatedAsset& animated, const ClipFrames& clip, ClipEvents& found,
+                                     Picture& picture) {
+  std::vector<std::string> out;
+  const auto patches_of = [&](const Event& event, const std::vector<TrianglePair>& contacts) {
+    Patches patches;
+    Vec3 sum = Vec3::Zero();
+    for (const TrianglePair& pair : contacts) {
+      patches.triangles[0].push_back(pair[0]);
+      patches.triangles[1].push_back(pair[1]);
+      for (const std::uint32_t t : pair) {
+        for (const Index v : animated.character().source_triangles[t]) sum += picture.position(v);
+      }
+    }
+    patches.point = sum / (6 * static_cast<double>(contacts.size()));
+    patches.way = event.direction;
+    return patches;
+  };
+  picture.pose(animated.positions(animated.deformation(clip.first)));
+  out.push_back(picture.png(nullptr, picture.forward()));
+  std::map<std::tuple<std::string, std::string, PenetrationClass>, const Event*> deepest;
+  for (const Event& event : found.events) {
+    const Event*& known = deepest[{event.parts[0], event.parts[1], event.kind}];
+    if (known == nullptr || event.depth_mm > known->depth_mm) known = &event;
+  }
+  for (std::size_t i = 0; i < found.events.size(); ++i) {
+    Event& event = found.events[i];
+    if (!is_fault(event.kind)) continue;
+    picture.pose(animated.positions(animated.deformation(clip.first + event.place)));
+    const Patches patches = patches_of(event, found.contacts[found.spans[i].deepest]);
+    event.eye = picture.find_eye(patches);
+    if (deepest[{event.parts[0], event.parts[1], event.kind}] != &event) continue;
+    event.picture = static_cast<int>(out.size());
+    out.push_back(picture.png(&patches, *event.eye));
+  }
+  return out;
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace spherechain::baker {
+
+// Number of threads that run_parallel() uses, at least 1.
+std::size_t thread_count();
+
+// Calls work(thread, i) for all i below `count`, on thread_count() threads; `thread` is below that, and no two calls
+// with the same `thread` run at once. One thread takes runs of neighbours. An exception that `work` throws is
+// thrown here, when all threads have ended.
+void run_parallel(std::size_t count, const std::function<void(std::size_t thread, std::size_t i)>& work);
+
+}  // namespace spherechain::baker
