@@ -45,7 +45,7 @@ std::vector<bool> loose_triangles(const Character& character, const Regions& reg
     if (loose.back()) small += a;
   }
   if (small > kMuch * total) {
-    const SurfaceQuery body(character.body);
+    const SurfaceQuery body(regions.body.mesh);
     std::vector<double> distance(pieces.count, 0.0);
     for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
       const Index piece = pieces.of_triangle[t];
@@ -69,7 +69,7 @@ SpherePairs find_ignored(const Character& character, const Regions& regions, con
   SpherePairs ignored(spheres.links.begin(), spheres.links.end());
   add_neighbours(character.skin, owner, gap, ignored);
   if (regions.is_tree()) return ignored;
-  add_neighbours(character.body, assign_triangles(character.body, regions.of_triangle, spheres), gap, ignored);
+  add_neighbours(regions.body.mesh, assign_triangles(regions.body.mesh, regions.of_triangle, spheres), gap, ignored);
   return ignored;
 }
 

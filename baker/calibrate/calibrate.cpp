@@ -58,9 +58,9 @@ std::vector<double> radii_of(const Binding& binding, bool detect) {
 }  // namespace
 
 void calibrate(const Character& character, const Regions& regions, const std::vector<Joint>& joints,
-               const std::vector<std::uint8_t>& asset, Binding& binding) {
+               const std::vector<std::uint8_t>& draft, Binding& binding) {
   const std::vector<Pair> pairs = tested_pairs(binding);
-  const std::vector<SampledPair> sampled = sampled_pairs(character, joints, asset, pairs);
+  const std::vector<SampledPair> sampled = sampled_pairs(character, joints, draft, pairs);
   const std::vector<double> sampled_radii = radii_of(binding, true);
   const auto sum_of = [&](const Pair& pair, const std::vector<double>& radii) { return radii[pair.a] + radii[pair.b]; };
 

@@ -23,8 +23,8 @@ inline constexpr int kCalibrationPoses = 1800;
 // 3. A pair becomes a rest pair where its own distance is below the sum of the radii, and saves false alarms in more
 //    than 1 % of the poses, or at rest.
 // A character that has neither bones nor joints takes no poses: its radii stay, and the distance at rest alone counts.
-// `asset` holds this binding with any rest pairs. The same input gives the same result.
+// `draft` is an asset with this binding and any rest pairs. The same input gives the same result.
 void calibrate(const Character& character, const Regions& regions, const std::vector<Joint>& joints,
-               const std::vector<std::uint8_t>& asset, Binding& binding);
+               const std::vector<std::uint8_t>& draft, Binding& binding);
 
 }  // namespace spherechain::baker

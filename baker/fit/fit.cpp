@@ -73,8 +73,8 @@ double penetration_depth(const Ball& a, const Ball& b) {
   return 1 - (a.center - b.center).norm() / (a.radius + b.radius);
 }
 
-Attempt<Spheres> fit_spheres(const Character& character, const Regions& regions, const FitSettings& settings) {
-  const Mesh& mesh = character.body;
+Attempt<Spheres> fit_spheres(const Regions& regions, const FitSettings& settings) {
+  const Mesh& mesh = regions.body.mesh;
   Spheres out;
   const auto append = [&](const std::vector<FittedSphere>& spheres) {
     out.spheres.insert(out.spheres.end(), spheres.begin(), spheres.end());

@@ -88,7 +88,7 @@ struct FitSettings {
 
 // The paper's fit: the march along limbs, the disk up the torso. There is none where a limb or the torso has no section
 // that a sphere fits in.
-Attempt<Spheres> fit_spheres(const Character& character, const Regions& regions, const FitSettings& settings);
+Attempt<Spheres> fit_spheres(const Regions& regions, const FitSettings& settings);
 
 // Spheres of the paper's fit that regions of a tree keep.
 struct KeptSpheres {

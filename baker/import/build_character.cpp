@@ -82,19 +82,17 @@ void check_positions(const SourceMesh& source, const std::string& name) {
 }  // namespace
 
 bool is_whole(const Character& character) {
-  return count_open_edges(character.body) == 0 &&
-         surface_area(character.body) > kBodyShareMin * surface_area(character.skin);
+  return count_open_edges(character.largest_piece.mesh) == 0 &&
+         surface_area(character.largest_piece.mesh) > kBodyShareMin * surface_area(character.skin);
 }
 
-bool is_part_of_skin(const Character& character) {
-  const std::vector<Index>& source = character.body_source_triangle;
+bool is_part_of_skin(const BodyMesh& body) {
+  const std::vector<Index>& source = body.source_triangle;
   return std::any_of(source.begin(), source.end(), [](Index t) { return t != kNoIndex; });
 }
 
-void take_all_pieces(Character& character) {
-  character.body = character.skin;
-  character.body_source_triangle = character.skin_source_triangle;
-  character.body_of_source = character.skin_of_source;
+BodyMesh all_pieces(const Character& character) {
+  return {character.skin, character.skin_source_triangle, character.skin_of_source};
 }
 
 std::vector<float> pack(const std::vector<Vec3>& positions) {
@@ -190,17 +188,17 @@ Character build_character(const SourceMesh& source, const std::string& name) {
   for (std::size_t t = 0; t < all.triangles.size(); ++t) {
     if (components.of_triangle[t] != body) continue;
     body_triangles.push_back(all.triangles[t]);
-    character.body_source_triangle.push_back(source_triangle[t]);
+    character.largest_piece.source_triangle.push_back(source_triangle[t]);
   }
   Piece skin_piece = extract(positions, all.triangles), body_piece = extract(positions, body_triangles);
   report.welded_vertices = skin_piece.mesh.positions.size();
   for (const Index w : welded) {
     character.skin_of_source.push_back(skin_piece.of_source[w]);
-    character.body_of_source.push_back(body_piece.of_source[w]);
+    character.largest_piece.of_source.push_back(body_piece.of_source[w]);
   }
   character.skin = std::move(skin_piece.mesh);
   character.skin_source_triangle = std::move(source_triangle);
-  character.body = std::move(body_piece.mesh);
+  character.largest_piece.mesh = std::move(body_piece.mesh);
   return character;
 }
 

@@ -42,7 +42,14 @@ struct SourceBuffer {
   std::uint64_t hash = 0;  // sc_hash_positions of its positions in the file, before any node moves them
 };
 
-// A character as read, before any decision about its shape.
+// A surface that is segmented and fitted: a piece of the skin, or a closed surface made of the skin or around it.
+struct BodyMesh {
+  Mesh mesh;
+  std::vector<Index> source_triangle;  // a triangle -> its number in the source, kNoIndex where it is new
+  std::vector<Index> of_source;        // source vertex -> vertex, kNoIndex where it is on none
+};
+
+// A character as read, before any decision about its shape. No stage changes it.
 //
 // Source order: the vertices and triangles of the file's meshes, one after another, each as the importer hands it out
 // with nothing joined or reordered (assimp: scene order, polygons triangulated, node transforms applied; glTF: in the
@@ -62,11 +69,7 @@ struct Character {
   std::vector<Index> skin_source_triangle;  // a triangle of skin -> its number in the source
   std::vector<Index> skin_of_source;        // source vertex -> vertex of skin, kNoIndex where no triangle uses it
 
-  // The surface that is segmented and fitted: the skin's largest connected piece, or a closed surface made of the skin
-  // or around it.
-  Mesh body;
-  std::vector<Index> body_source_triangle;  // a triangle of body -> its number in the source, kNoIndex where it is new
-  std::vector<Index> body_of_source;        // source vertex -> vertex of body, kNoIndex where it is on none
+  BodyMesh largest_piece;  // of the skin: the connected piece with the greatest area
 
   double metres_per_unit = 1;
   Vec3 up_hint = Vec3::UnitY();  // the file's up axis; the character's own is found from its shape
@@ -81,14 +84,14 @@ Character import_character(const std::filesystem::path& path, const ImportOption
 // others.
 inline constexpr double kBodyShareMin = 0.6;
 
-// True if the body is closed, and most of the skin.
+// True if the largest piece of the skin is closed, and most of the skin.
 bool is_whole(const Character& character);
 
-// True if the body's triangles are triangles of the skin, or parts of them. A wrap's are not.
-bool is_part_of_skin(const Character& character);
+// True if a body's triangles are triangles of the skin, or parts of them. A wrap's are not.
+bool is_part_of_skin(const BodyMesh& body);
 
-// Makes the body all of the skin, its pieces as they are.
-void take_all_pieces(Character& character);
+// All of the skin, its pieces as they are.
+BodyMesh all_pieces(const Character& character);
 
 // The positions as single floats x, y, z, as the runtime takes them.
 std::vector<float> pack(const std::vector<Vec3>& positions);

@@ -20,20 +20,19 @@ std::vector<std::vector<Index>> corners_of(const Mesh& skin, const Spheres& sphe
 
 }  // namespace
 
-Attempt<FittedCharacter> fit_prop(Character prop, const BakeSettings& settings) {
+Attempt<FittedCharacter> fit_prop(const Character& prop, const BakeSettings& settings) {
   constexpr double kRounding = 1e-5;  // of single precision
   FittedCharacter out;
-  out.character = std::move(prop);
   Regions& regions = out.segmentation.regions;
-  regions = segment_by_bones(out.character, {}, settings.segment.facing, kPropSpheres);
+  regions = segment_by_bones(prop, {}, settings.segment.facing, kPropSpheres);
   out.segmentation.choice.strategy = "prop";
-  const Mesh& skin = out.character.skin;
-  out.spheres = fit_halves(out.character, regions, settings.fit);
+  const Mesh& skin = prop.skin;
+  out.spheres = fit_halves(prop, regions, settings.fit);
   const std::vector<std::vector<Index>> corners = corners_of(skin, out.spheres);
   for (std::size_t s = 0; s < corners.size(); ++s) {
     out.spheres.spheres[s].ball = minimum_enclosing_ball(skin, corners[s]);
   }
-  Attempt<Binding> binding = bind_spheres(out.character, regions, out.spheres, settings.bind);
+  Attempt<Binding> binding = bind_spheres(prop, regions, out.spheres, settings.bind);
   if (!binding) return binding.reason();
   out.binding = std::move(*binding);
   // Where pivots lie in a plane, the centre is not the ball's.
@@ -44,7 +43,7 @@ Attempt<FittedCharacter> fit_prop(Character prop, const BakeSettings& settings) 
       sphere.detect_radius = std::max(sphere.detect_radius, distance * (1 + kRounding));
     }
   }
-  out.quality = measure_fit(out.character, regions, out.binding);
+  out.quality = measure_fit(prop, regions, out.binding);
   return out;
 }
 

@@ -7,6 +7,6 @@ namespace spherechain::baker {
 
 // Spheres for a rigid thing, which hold all of it at their detect radii: pieces by the fit by halves, each in the
 // smallest sphere around it. There are none where a sphere finds no pivots.
-Attempt<FittedCharacter> fit_prop(Character prop, const BakeSettings& settings);
+Attempt<FittedCharacter> fit_prop(const Character& prop, const BakeSettings& settings);
 
 }  // namespace spherechain::baker

@@ -45,22 +45,20 @@ struct Proposal {
 
 struct Strategy {
   const char* name;
-  std::function<Attempt<Proposal>()> run;  // may change the body
+  std::function<Attempt<Proposal>()> run;
 };
 
-// A proposal with a reservation, and what it was made on.
+// A proposal with a reservation, and how its body was closed.
 struct Reserve {
   Proposal proposal;
-  Mesh body;
-  std::vector<Index> body_source_triangle, body_of_source;
   ClosingReport closing;
 };
 
 void run_rig(Bake& out, const Progress& progress) {
   stage(out, progress, "rig", [&] {
     if (is_biped(out.regions) && out.joints.empty()) {
-      out.joints = place_joints(out.character, out.regions);
-      if (out.character.rig.bones.empty()) out.rig_weights = rig_weights(out.character, out.joints);
+      out.joints = place_joints(out.regions);
+      if (out.character.rig.bones.empty()) out.rig_weights = rig_weights(out.character, out.regions.body, out.joints);
     }
     out.body_parts = find_body_parts(out.character, out.roles, out.regions, out.joints, out.rig_weights);
     if (out.settings.import.prop) {
@@ -87,15 +85,16 @@ void run_after_fit(Bake& out, const Progress& progress) {
     out.clusters = make_clusters(out.character, out.binding, out.bones, out.rig_weights, settings.clusters);
   });
   const auto write = [&] {
-    out.asset = serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, out.bones,
-                           out.moments, out.body_parts, out.clusters, to_json(settings)});
+    return serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, out.bones,
+                      out.moments, out.body_parts, out.clusters, to_json(settings)});
   };
-  stage(out, progress, "write", write);
-  if (settings.bind.rule == RefitRule::kPaper || settings.import.prop) return;
-  stage(out, progress, "calibrate", [&] {
-    calibrate(out.character, out.regions, out.joints, out.asset, out.binding);
-    write();
-  });
+  if (settings.bind.rule != RefitRule::kPaper && !settings.import.prop) {
+    stage(out, progress, "calibrate", [&] {
+      const std::vector<std::uint8_t> draft = write();  // for the runtime, which moves the spheres
+      calibrate(out.character, out.regions, out.joints, draft, out.binding);
+    });
+  }
+  stage(out, progress, "write", [&] { out.asset = write(); });
 }
 
 // Changes the spheres as a person asked, and binds them again.
@@ -118,29 +117,30 @@ void edit(Bake& out) {
 
 Attempt<Spheres> fit_regions(const Character& character, const Regions& regions, const FitSettings& settings) {
   if (regions.is_tree()) return fit_halves(character, regions, settings);
-  return fit_spheres(character, regions, settings);
+  return fit_spheres(regions, settings);
 }
 
 }  // namespace
 
-Attempt<Segmentation> segment_character(Character& character, const Roles& roles, const SegmentSettings& settings,
+Attempt<Segmentation> segment_character(const Character& character, const Roles& roles, const SegmentSettings& settings,
                                         Wraps wraps) {
   Segmentation out;
   const bool rigged = !roles.limbs.empty() && !character.rig.weights.empty();
   const bool whole = is_whole(character);
   std::optional<Reason> failure;
   std::optional<Reserve> reserve;
+  BodyMesh latest = character.largest_piece;  // the body that was tried last
 
   const auto does_not_apply = [](const char* what) { return Reason{what, Reason::Cause::kDoesNotApply}; };
-  const auto by_shape = [&]() -> Attempt<Proposal> {
-    Attempt<Regions> regions = segment_by_shape(character, settings);
+  const auto by_shape = [&](const BodyMesh& body) -> Attempt<Proposal> {
+    Attempt<Regions> regions = segment_by_shape(character, body, settings);
     if (!regions) return *(failure = regions.reason());
     // A head of its own piece, and the rest is taken for a quadruped: a wrap around both tells more.
-    const bool complete = rigged || covers_skin(character) || is_expected(*regions, settings);
+    const bool complete = rigged || covers_skin(body, character.skin) || is_expected(*regions, settings);
     return Proposal{std::move(*regions), complete ? "" : "it is no biped, and pieces of the skin are left out", {}};
   };
-  const auto by_rig = [&]() -> Attempt<Proposal> {
-    Attempt<Regions> regions = segment_by_rig(character, roles, settings);
+  const auto by_rig = [&](BodyMesh body) -> Attempt<Proposal> {
+    Attempt<Regions> regions = segment_by_rig(character, std::move(body), roles, settings);
     if (!regions) return *(failure = regions.reason());
     return Proposal{std::move(*regions), {}, {}};
   };
@@ -151,26 +151,28 @@ Attempt<Segmentation> segment_character(Character& character, const Roles& roles
                [&]() -> Attempt<Proposal> {
                  if (!whole) return does_not_apply("the skin is not one closed surface");
                  if (rigged && roles.kind != BodyKind::kBiped) return does_not_apply("the rig is not a biped's");
-                 return by_shape();
+                 return by_shape(character.largest_piece);
                }},
       Strategy{"shape of the repaired skin",
                [&]() -> Attempt<Proposal> {
                  if (whole) return does_not_apply("the skin needs no repair");
                  if (rigged) return does_not_apply("a rig needs no closed surface");
-                 if (const auto reason = repair_body(character, out.closing)) return *reason;
-                 return by_shape();
+                 const Attempt<BodyMesh> body = repair_body(character, out.closing);
+                 if (!body) return body.reason();
+                 latest = *body;
+                 return by_shape(*body);
                }},
       Strategy{"rig",
                [&]() -> Attempt<Proposal> {
                  if (!rigged) return does_not_apply("there is no rig with limbs");
                  if (!whole) return does_not_apply("the skin is not one closed surface");
-                 return by_rig();
+                 return by_rig(character.largest_piece);
                }},
       Strategy{"rig on all pieces of the skin",
                [&]() -> Attempt<Proposal> {
                  if (!rigged) return does_not_apply("there is no rig with limbs");
-                 take_all_pieces(character);
-                 Attempt<Proposal> proposal = by_rig();
+                 latest = all_pieces(character);
+                 Attempt<Proposal> proposal = by_rig(latest);
                  if (proposal && limbs_are_in_shards(character.skin, proposal->regions)) {
                    return *(failure = Reason{"most of the limbs' skin is in small pieces"});
                  }
@@ -182,7 +184,8 @@ Attempt<Segmentation> segment_character(Character& character, const Roles& roles
                  if (wraps == Wraps::kUnmoved && !character.rig.weights.empty()) {
                    return does_not_apply("bones move the skin");
                  }
-                 if (failure && covers_skin(character)) return does_not_apply("a wrap has no more limbs than the skin");
+                 if (failure && covers_skin(latest, character.skin))
+                   return does_not_apply("a wrap has no more limbs than the skin");
                  Attempt<SegmentedWrap> found =
                      segment_wraps(character, settings, failure, out.closing, out.choice.passed_over);
                  if (!found) return *(failure = found.reason());
@@ -206,23 +209,13 @@ Attempt<Segmentation> segment_character(Character& character, const Roles& roles
     if (proposal->reservation.empty()) return take(*proposal);
     out.choice.passed_over.push_back({proposal->strategy, {proposal->reservation}});
     if (!reserve) {
-      reserve = Reserve{std::move(*proposal), character.body, character.body_source_triangle, character.body_of_source,
-                        out.closing};
+      reserve = Reserve{std::move(*proposal), out.closing};
     }
   }
   if (!reserve) return failure.value_or(Reason{"its rig has no limbs, and its skin is not one closed surface"});
-  character.body = std::move(reserve->body);
-  character.body_source_triangle = std::move(reserve->body_source_triangle);
-  character.body_of_source = std::move(reserve->body_of_source);
   reserve->closing.seconds = out.closing.seconds;
   out.closing = reserve->closing;
   return take(reserve->proposal);
-}
-
-void close_body(Character& character, const SegmentSettings& settings) {
-  if (is_whole(character) && covers_skin(character)) return;
-  const Attempt<Segmentation> found = segment_character(character, {}, settings, Wraps::kAll);
-  if (!found) throw Error(ExitCode::kSegmentation, character.file + ": " + found.reason().what);
 }
 
 namespace {
@@ -230,12 +223,13 @@ namespace {
 using Candidate = Attempt<FittedCharacter>;
 
 // Binds and measures what a candidate's spheres are.
-Candidate bound(FittedCharacter candidate, Attempt<Spheres> spheres, const BakeSettings& settings) {
+Candidate bound(const Character& character, FittedCharacter candidate, Attempt<Spheres> spheres,
+                const BakeSettings& settings) {
   if (!spheres) return spheres.reason();
   const Regions& regions = candidate.segmentation.regions;
-  Attempt<Binding> binding = bind_spheres(candidate.character, regions, *spheres, settings.bind);
+  Attempt<Binding> binding = bind_spheres(character, regions, *spheres, settings.bind);
   if (!binding) return binding.reason();
-  candidate.quality = measure_fit(candidate.character, regions, *binding);
+  candidate.quality = measure_fit(character, regions, *binding);
   candidate.spheres = std::move(*spheres);
   candidate.binding = std::move(*binding);
   return candidate;
@@ -249,21 +243,19 @@ std::size_t sphere_limit(const BakeSettings& settings) {
 Candidate fit_limbs(const Character& character, const Roles& roles, const BakeSettings& settings, Wraps wraps,
                     Choice& choice) {
   FittedCharacter out;
-  out.character = character;
-  Attempt<Segmentation> found = segment_character(out.character, roles, settings.segment, wraps);
+  Attempt<Segmentation> found = segment_character(character, roles, settings.segment, wraps);
   if (!found) return found.reason();
   out.segmentation = std::move(*found);
   choice = out.segmentation.choice;
-  Attempt<Spheres> spheres = fit_spheres(out.character, out.segmentation.regions, settings.fit);
-  return bound(std::move(out), std::move(spheres), settings);
+  Attempt<Spheres> spheres = fit_spheres(out.segmentation.regions, settings.fit);
+  return bound(character, std::move(out), std::move(spheres), settings);
 }
 
 Candidate fit_bones(const Character& character, const Roles& roles, const BakeSettings& settings) {
   FittedCharacter out;
-  out.character = character;
-  out.segmentation.regions = segment_by_bones(out.character, roles, settings.segment.facing, sphere_limit(settings));
-  Attempt<Spheres> spheres = fit_halves(out.character, out.segmentation.regions, settings.fit);
-  return bound(std::move(out), std::move(spheres), settings);
+  out.segmentation.regions = segment_by_bones(character, roles, settings.segment.facing, sphere_limit(settings));
+  Attempt<Spheres> spheres = fit_halves(character, out.segmentation.regions, settings.fit);
+  return bound(character, std::move(out), std::move(spheres), settings);
 }
 
 // Which regions fit well; of a left and a right limb both or none.
@@ -282,7 +274,8 @@ std::vector<bool> well_fitted(const Regions& regions, const std::vector<double>&
 }
 
 // Limbs and torso where they fit well, and bones for the rest.
-Candidate fit_mixed(const FittedCharacter& limbed, const Roles& roles, const BakeSettings& settings) {
+Candidate fit_mixed(const Character& character, const FittedCharacter& limbed, const Roles& roles,
+                    const BakeSettings& settings) {
   const Regions& regions = limbed.segmentation.regions;
   const std::vector<double>& far = limbed.quality.far_of_region;
   const std::vector<bool> kept = well_fitted(regions, far);
@@ -294,12 +287,10 @@ Candidate fit_mixed(const FittedCharacter& limbed, const Roles& roles, const Bak
   if (!regions.has_torso || count == 0 || count == kept.size()) return Reason{"no region fits better than others"};
   if (kept_spheres >= sphere_limit(settings)) return Reason{"its limbs take all spheres"};
   FittedCharacter out;
-  out.character = limbed.character;
-  MixedRegions mixed =
-      segment_rest_by_bones(out.character, regions, kept, roles, sphere_limit(settings) - kept_spheres);
+  MixedRegions mixed = segment_rest_by_bones(character, regions, kept, roles, sphere_limit(settings) - kept_spheres);
   out.segmentation.regions = std::move(mixed.regions);
   Attempt<Spheres> spheres =
-      fit_halves(out.character, out.segmentation.regions, settings.fit, {&limbed.spheres, std::move(mixed.kept)});
+      fit_halves(character, out.segmentation.regions, settings.fit, {&limbed.spheres, std::move(mixed.kept)});
   const Choice& tried = limbed.segmentation.choice;
   out.segmentation.choice = {tried.strategy + ", in part by bones", tried.passed_over};
   for (std::size_t region = 0; region < kept.size(); ++region) {
@@ -309,7 +300,7 @@ Candidate fit_mixed(const FittedCharacter& limbed, const Roles& roles, const Bak
          {fmt::format("{:.0f} % of its skin is farther from its sphere than {:.0f} % of the height", 100 * far[region],
                       100 * kWellFitted)}});
   }
-  return bound(std::move(out), std::move(spheres), settings);
+  return bound(character, std::move(out), std::move(spheres), settings);
 }
 
 Reason why_not(const FittedCharacter& candidate, const FittedCharacter& taken) {
@@ -319,7 +310,7 @@ Reason why_not(const FittedCharacter& candidate, const FittedCharacter& taken) {
 
 }  // namespace
 
-FittedCharacter fit_character(Character character, const Roles& roles, const BakeSettings& settings) {
+FittedCharacter fit_character(const Character& character, const Roles& roles, const BakeSettings& settings) {
   const auto taken_or_fail = [&](Candidate candidate) {
     if (!candidate) throw Error(ExitCode::kSegmentation, character.file + ": " + candidate.reason().what);
     return std::move(*candidate);
@@ -336,7 +327,7 @@ FittedCharacter fit_character(Character character, const Roles& roles, const Bak
 
   const bool too_many = limbed && settings.fit.spheres && limbed->spheres.spheres.size() > sphere_limit(settings);
   Candidate mixed{Reason{"there is nothing to mix"}};
-  if (limbed && !too_many && !character.rig.bones.empty()) mixed = fit_mixed(*limbed, roles, settings);
+  if (limbed && !too_many && !character.rig.bones.empty()) mixed = fit_mixed(character, *limbed, roles, settings);
   if (mixed && mixed->quality.grade() == FitGrade::kGood) return std::move(*mixed);
   FittedCharacter bones = taken_or_fail(fit_bones(character, roles, settings));
   if (mixed && mixed->quality.far_area <= bones.quality.far_area) return std::move(*mixed);
@@ -367,8 +358,7 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings, cons
     }
   });
   stage(out, progress, "fit", [&] {
-    FittedCharacter fitted = fit_character(std::move(out.character), out.roles, settings);
-    out.character = std::move(fitted.character);
+    FittedCharacter fitted = fit_character(out.character, out.roles, settings);
     out.regions = std::move(fitted.segmentation.regions);
     out.closing = fitted.segmentation.closing;
     out.segmented_by = std::move(fitted.segmentation.choice);

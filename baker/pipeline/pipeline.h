@@ -100,14 +100,12 @@ struct Segmentation {
 // Characters whose skin may be wrapped. Wrapping is slow; where bones move the skin, the fit by bones replaces it.
 enum class Wraps : std::uint8_t { kUnmoved, kAll };
 
-// Tries the strategies of segmentation in order: by shape, by rig, and both on a closed surface made of the skin. The
-// body becomes what was segmented.
-Attempt<Segmentation> segment_character(Character& character, const Roles& roles, const SegmentSettings& settings,
+// Tries the strategies of segmentation in order: by shape, by rig, and both on a closed surface made of the skin.
+Attempt<Segmentation> segment_character(const Character& character, const Roles& roles, const SegmentSettings& settings,
                                         Wraps wraps);
 
-// A character with its spheres and their pivots.
+// A character's regions, their spheres and pivots.
 struct FittedCharacter {
-  Character character;  // with the body that was segmented
   Segmentation segmentation;
   Spheres spheres;
   Binding binding;
@@ -118,10 +116,7 @@ struct FittedCharacter {
 // spheres, also the fit by halves of the bones' parts: the one with less skin far from its sphere is taken. Under the
 // paper's refit rule, and where the settings name a body, there is only the first; of a prop only the second. Throws
 // Error(kSegmentation) where there is none.
-FittedCharacter fit_character(Character character, const Roles& roles, const BakeSettings& settings);
-
-// Makes the body what segment_character makes of it without a rig: for what depends on the body alone (bone heat).
-void close_body(Character& character, const SegmentSettings& settings);
+FittedCharacter fit_character(const Character& character, const Roles& roles, const BakeSettings& settings);
 
 // Runs every stage. `progress` gets each stage's name before it runs; it may be empty.
 Bake bake(const std::filesystem::path& input, const BakeSettings& settings,

@@ -32,7 +32,7 @@ std::string name_of(const WrapSize& size) {
 // the arms of an A-pose may have grown to the body.
 class WrapSearch {
  public:
-  WrapSearch(Character& character, const SegmentSettings& settings, const std::optional<Reason>& of_body,
+  WrapSearch(const Character& character, const SegmentSettings& settings, const std::optional<Reason>& of_body,
              ClosingReport& closing)
       : character_(character), settings_(settings), closing_(closing), reason_(of_body) {}
 
@@ -66,7 +66,7 @@ class WrapSearch {
       if (!best_ || i != best_->tried) passed_over.push_back(tried_[i]);
     }
     if (!best_) return reason_.value_or(no_body);
-    use_wrap(character_, best_->wrap, closing_);
+    body_of(best_->wrap, character_, closing_);
     return SegmentedWrap{std::move(best_->regions), tried_[best_->tried].strategy};
   }
 
@@ -95,8 +95,7 @@ class WrapSearch {
     }
     constexpr double kThinGood = 0.02;
     const bool leaks = wrap->thin > kThinGood;
-    use_wrap(character_, *wrap, closing_);
-    Attempt<Regions> regions = segment_by_shape(character_, settings_);
+    Attempt<Regions> regions = segment_by_shape(character_, body_of(*wrap, character_, closing_), settings_);
     if (!regions) {
       reason = regions.reason();
       if (!reason_) reason_ = reason;
@@ -118,7 +117,7 @@ class WrapSearch {
     return expected != best_expected ? expected : thin < best_->wrap.thin;
   }
 
-  Character& character_;
+  const Character& character_;
   const SegmentSettings& settings_;
   ClosingReport& closing_;
   std::optional<Reason> reason_;  // the first: of the body, or of the finest wrap
@@ -133,7 +132,7 @@ bool is_expected(const Regions& regions, const SegmentSettings& settings) {
   return settings.body != BodyKind::kUnknown || is_biped(regions);
 }
 
-Attempt<SegmentedWrap> segment_wraps(Character& character, const SegmentSettings& settings,
+Attempt<SegmentedWrap> segment_wraps(const Character& character, const SegmentSettings& settings,
                                      const std::optional<Reason>& of_body, ClosingReport& closing,
                                      std::vector<PassedOver>& passed_over) {
   return WrapSearch(character, settings, of_body, closing).run(passed_over);

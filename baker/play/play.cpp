@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "baker/mesh/error.h"
 #include "baker/motion/capture.h"
@@ -183,12 +184,8 @@ void AnimatedAsset::use_skin() {
 }
 
 void AnimatedAsset::use_rig(const std::vector<Joint>& joints) {
-  if (rig_weights_.empty()) {
-    if (character_.rig.bones.empty()) close_body(character_, segment_settings_);  // whose weights the bake took
-    rig_weights_ = rig_weights(character_, joints);
-  }
   bone_names_.clear();
-  weights_ = rig_weights_;
+  weights_ = weights_of(file_, character_);
   for (const Joint& joint : joints) bone_names_.push_back(joint.name);
 }
 
@@ -224,6 +221,42 @@ std::vector<Joint> joints_of(const OpenAsset& asset) {
 }
 
 double mm_per_unit(const OpenAsset& asset) { return 1000 * double{asset->info().metres_per_unit}; }
+
+std::vector<VertexWeights> weights_of(const OpenAsset& asset, const Character& character) {
+  const Surface& surface = asset.surface();
+  std::vector<VertexWeights> of_vertex(surface.source_vertices.size);
+  for (const spherechain::Cluster& cluster : surface.clusters) {
+    for (std::size_t slot = 0; slot < cluster.vertex_count; ++slot) {
+      VertexWeights& weights = of_vertex[surface.cluster_vertices[cluster.first_vertex + slot]];
+      if (weights.weight[0] > 0) continue;  // another cluster has it, too
+      std::vector<std::pair<double, Index>> influences;
+      for (std::size_t bone = 0; bone < cluster.bone_count; ++bone) {
+        const float weight = surface.slot_weights[cluster.first_weight + bone * slot_count(cluster) + slot];
+        if (weight > 0) influences.emplace_back(-double{weight}, surface.cluster_bones[cluster.first_bone + bone]);
+      }
+      std::sort(influences.begin(), influences.end());
+      for (std::size_t k = 0; k < std::min(influences.size(), kMaxInfluences); ++k) {
+        weights.weight[k] = -influences[k].first;
+        weights.joint[k] = influences[k].second;
+      }
+    }
+  }
+  // Triangles that the import dropped may have vertices of their own: they move like what they were welded to.
+  std::vector<Index> vertex_of_skin(character.skin.positions.size(), kNoIndex);
+  for (std::size_t t = 0; t < surface.place_of_source.size; ++t) {
+    const std::uint32_t place = surface.place_of_source[t];
+    for (std::size_t k = 0; place != kNoPlace && k < 3; ++k) {
+      const Index skin = character.skin_of_source[character.source_triangles[t][k]];
+      if (skin != kNoIndex) vertex_of_skin[skin] = surface.triangle_vertices[3 * place + k];
+    }
+  }
+  std::vector<VertexWeights> out;
+  for (const Index skin : character.skin_of_source) {
+    const Index vertex = skin == kNoIndex ? kNoIndex : vertex_of_skin[skin];
+    out.push_back(vertex == kNoIndex ? VertexWeights() : of_vertex[vertex]);
+  }
+  return out;
+}
 
 BodyParts body_parts_of(const OpenAsset& asset) {
   constexpr std::uint8_t kNone = 255;

@@ -81,8 +81,8 @@ class AnimatedAsset {
 
  private:
   void play_poses(const std::string& file);
-  void use_skin();  // the source's own
-  void use_rig(const std::vector<Joint>& joints);
+  void use_skin();                                 // the source's own
+  void use_rig(const std::vector<Joint>& joints);  // the automatic rig, by the weights in the asset
   void play_capture(const std::string& file);
   std::vector<const Clip*> find_clips(const std::string& wanted) const;
 
@@ -92,7 +92,7 @@ class AnimatedAsset {
   ImportOptions import_;  // of the bake, as the next two
   RoleFile roles_;
   SegmentSettings segment_settings_;
-  std::vector<VertexWeights> weights_, rig_weights_;
+  std::vector<VertexWeights> weights_;
   std::vector<std::string> bone_names_;
   std::unique_ptr<Motion> motion_;  // null where clips or nothing plays
   MotionFrames frames_;
@@ -104,6 +104,10 @@ double mm_per_unit(const OpenAsset& asset);
 
 // The automatic rig's; empty for a character with bones of its own.
 std::vector<Joint> joints_of(const OpenAsset& asset);
+
+// Weights of every source vertex to the asset's bones, as the runtime skins with them. A vertex that no triangle uses
+// has none.
+std::vector<VertexWeights> weights_of(const OpenAsset& asset, const Character& character);
 
 // The asset's body parts; 255 where a source triangle has none.
 BodyParts body_parts_of(const OpenAsset& asset);

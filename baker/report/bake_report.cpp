@@ -21,10 +21,11 @@ const char* name_of(BodySource body) {
 }
 
 // The skin's triangles that the body's are not made of.
-std::size_t count_other_triangles(const Character& character) {
-  std::set<Index> body(character.body_source_triangle.begin(), character.body_source_triangle.end());
+std::size_t count_other_triangles(const Bake& bake) {
+  const std::vector<Index>& source = bake.regions.body.source_triangle;
+  std::set<Index> body(source.begin(), source.end());
   body.erase(kNoIndex);
-  return character.skin.triangles.size() - body.size();
+  return bake.character.skin.triangles.size() - body.size();
 }
 
 ordered_json closing_section(const ClosingReport& closing) {
@@ -76,9 +77,9 @@ ordered_json import_section(const Bake& bake) {
           {"source_vertices", bake.character.source_positions.size()},
           {"source_triangles", bake.character.source_triangles.size()},
           {"welded_vertices", report.welded_vertices},
-          {"body_vertices", bake.character.body.positions.size()},
-          {"body_triangles", bake.character.body.triangles.size()},
-          {"other_triangles", count_other_triangles(bake.character)},
+          {"body_vertices", bake.regions.body.mesh.positions.size()},
+          {"body_triangles", bake.regions.body.mesh.triangles.size()},
+          {"other_triangles", count_other_triangles(bake)},
           {"degenerate_dropped", report.degenerate_dropped},
           {"duplicates_dropped", report.duplicates_dropped},
           {"points_and_lines_dropped", report.points_and_lines_dropped},
@@ -141,7 +142,7 @@ ordered_json fit_entry(const Ball& ball, const TorsoFit& fit, const Mesh& mesh) 
 const char* name_of(Side side) { return side == Side::kLeft ? "left" : side == Side::kRight ? "right" : "none"; }
 
 ordered_json fit_section(const Bake& bake) {
-  const Mesh& mesh = bake.character.body;
+  const Mesh& mesh = bake.regions.body.mesh;
   ordered_json torso = ordered_json::array();
   for (const TorsoFit& fit : bake.spheres.torso) {
     ordered_json vertices = ordered_json::array();
@@ -341,7 +342,7 @@ std::string unit_note(const Bake& bake) {
 std::string bake_report_text(const Bake& bake) {
   const double metres = bake.regions.frame.height * bake.character.metres_per_unit;
   const std::string what =
-      bake.settings.import.prop ? "a prop" : fmt::format("{} body", bake.character.body.triangles.size());
+      bake.settings.import.prop ? "a prop" : fmt::format("{} body", bake.regions.body.mesh.triangles.size());
   std::string out = fmt::format("{}: {} triangles ({}), {} components, {:.3f} m {}; {}\n", bake.character.file,
                                 bake.character.source_triangles.size(), what, bake.character.report.components, metres,
                                 is_tall(bake) ? "tall" : "long", bake.regions.facing);

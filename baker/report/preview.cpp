@@ -294,7 +294,8 @@ std::string preview_glb(const Bake& bake) {
   const Character& character = bake.character;
   std::vector<VertexWeights> weights(character.skin.positions.size());
   if (!bake.joints.empty()) {
-    weights = weights_of(rig_weights(character, bake.joints), character.skin_of_source, character.skin);
+    weights =
+        weights_of(rig_weights(character, bake.regions.body, bake.joints), character.skin_of_source, character.skin);
   }
   PreviewSkin skin;
   append(character.skin, bake.regions.of_skin, weights, skin);

@@ -85,7 +85,7 @@ LimbJoints limb_joints(const Limb& limb, double from, double to, double inside, 
 
 }  // namespace
 
-std::vector<Joint> place_joints(const Character& character, const Regions& regions) {
+std::vector<Joint> place_joints(const Regions& regions) {
   const BodyFrame& frame = regions.frame;
   const double h = frame.height;
   std::array<LimbJoints, 4> limbs;
@@ -106,7 +106,7 @@ std::vector<Joint> place_joints(const Character& character, const Regions& regio
   const double nape = chest + kNape * (back.length() - chest);
   const Vec3 spine = back.at(kOmphalion * nape), rib_cage = back.at(kXiphion * nape);
   // From above: inside, the mouth would be in the way. The skeleton's own end wanders to the face.
-  const auto top = SurfaceQuery(character.body).first_hit(throat + 2 * h * frame.up, -frame.up);
+  const auto top = SurfaceQuery(regions.body.mesh).first_hit(throat + 2 * h * frame.up, -frame.up);
   const Vec3 crown = top ? top->point : Vec3(throat + 0.15 * h * frame.up);
   const Vec3 head = throat + kSkull * (crown - throat);
 

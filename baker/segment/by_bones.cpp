@@ -199,9 +199,8 @@ int nearest_entry(const Mesh& skin, const std::vector<Entry>& entries, std::size
 
 }  // namespace
 
-Regions segment_by_bones(Character& character, const Roles& roles, const std::optional<Vec3>& facing,
+Regions segment_by_bones(const Character& character, const Roles& roles, const std::optional<Vec3>& facing,
                          std::size_t spheres) {
-  take_all_pieces(character);
   const std::vector<Part> parts = build_part_tree(character, spheres, {});
   Regions regions;
   regions.provider = "bones";
@@ -210,12 +209,12 @@ Regions segment_by_bones(Character& character, const Roles& roles, const std::op
   std::vector<Entry> entries;
   add_parts(character, roles, parts, taken, entries);
   fill(entries, character.skin.triangles.size(), regions);
+  regions.body = all_pieces(character);
   return regions;
 }
 
-MixedRegions segment_rest_by_bones(Character& character, const Regions& found, const std::vector<bool>& kept,
+MixedRegions segment_rest_by_bones(const Character& character, const Regions& found, const std::vector<bool>& kept,
                                    const Roles& roles, std::size_t spheres) {
-  take_all_pieces(character);
   Regions limbed = found;
   limbed.of_skin = with_all_of_limbs(character, found, kept);
   std::vector<bool> left_out;
@@ -248,6 +247,7 @@ MixedRegions segment_rest_by_bones(Character& character, const Regions& found, c
   out.regions.frame = limbed.frame;
   out.regions.facing = limbed.facing;
   fill(entries, character.skin.triangles.size(), out.regions);
+  out.regions.body = all_pieces(character);
   return out;
 }
 

@@ -28,7 +28,8 @@ Vec3 left_of(const Regions& regions) {
 
 }  // namespace
 
-Attempt<Regions> segment_by_rig(const Character& character, const Roles& roles, const SegmentSettings& settings) {
+Attempt<Regions> segment_by_rig(const Character& character, BodyMesh body, const Roles& roles,
+                                const SegmentSettings& settings) {
   const auto because = [](const std::string& what) {
     return Reason{what + " (inspect --roles says what its joints are)"};
   };
@@ -38,7 +39,7 @@ Attempt<Regions> segment_by_rig(const Character& character, const Roles& roles, 
   if (roles.trunk.empty()) return because("the rig has no trunk that limbs leave from");
   const std::vector<Vec3> joints = rest_positions(character.rig);
   const auto joint = [&](int node) { return joints[static_cast<std::size_t>(node)]; };
-  const SkinRegions skin = segment_from_skin(character, roles);
+  const SkinRegions skin = segment_from_skin(character, body, roles);
 
   Regions regions;
   regions.provider = "rig";
@@ -62,7 +63,7 @@ Attempt<Regions> segment_by_rig(const Character& character, const Roles& roles, 
     return because("the rig's limbs do not tell left, right and up apart");
   }
   regions.frame.left = left.normalized();
-  regions.frame = with_up(regions.frame, chest - hip, character.body);
+  regions.frame = with_up(regions.frame, chest - hip, body.mesh);
   const bool biped = roles.kind == BodyKind::kBiped;
   if (biped) regions.frame.height = stature(character, roles);
   const Vec3& axis = biped ? regions.frame.forward : regions.frame.up;
@@ -88,7 +89,7 @@ Attempt<Regions> segment_by_rig(const Character& character, const Roles& roles, 
     return because("the rig's trunk moves no skin");
   }
   if (!biped) {
-    const SurfaceQuery trunk(character.body, triangles_of_region(regions, regions.torso_region()));
+    const SurfaceQuery trunk(body.mesh, triangles_of_region(regions, regions.torso_region()));
     const auto height = [&](const Vec3& p) { return (p - regions.frame.origin).dot(regions.frame.up); };
     const auto centred = [&](const Vec3& p) {
       const double rise = height(upper) - height(pelvis);
@@ -100,7 +101,7 @@ Attempt<Regions> segment_by_rig(const Character& character, const Roles& roles, 
   }
   const bool has_neck = !roles.neck_head.empty();
   const Vec3 neck = has_neck ? joint(roles.neck_head.front()) : upper;
-  regions.torso = ends_by_skin(character.body, regions, has_neck ? &neck : nullptr);
+  regions.torso = ends_by_skin(body.mesh, regions, has_neck ? &neck : nullptr);
 
   std::vector<Vec3> spine{regions.hip};
   for (const int node : roles.trunk) {
@@ -110,6 +111,7 @@ Attempt<Regions> segment_by_rig(const Character& character, const Roles& roles, 
   regions.spine = Polyline(std::move(spine));
   regions.spine_chest = regions.spine.closest(regions.chest);
   regions.spine_neck = regions.spine.closest(neck);
+  regions.body = std::move(body);
   return regions;
 }
 

@@ -186,8 +186,8 @@ Attempt<TorsoEnds> find_ends(Regions& regions, const BodyPlan& plan, const Mesh&
 
 }  // namespace
 
-Attempt<Regions> segment_by_shape(const Character& character, const SegmentSettings& settings) {
-  const Mesh& mesh = character.body;
+Attempt<Regions> segment_by_shape(const Character& character, const BodyMesh& body, const SegmentSettings& settings) {
+  const Mesh& mesh = body.mesh;
   if (const std::size_t open = count_open_edges(mesh); open > 0) {
     return Reason{"the body is not one closed surface (" + std::to_string(open) +
                   " edges are open or shared by more than two triangles; close its holes)"};
@@ -223,7 +223,8 @@ Attempt<Regions> segment_by_shape(const Character& character, const SegmentSetti
   } else {
     regions.frame = plan.frame;
   }
-  regions.of_skin = label_skin(character, surface, regions.of_triangle);
+  regions.of_skin = label_skin(character, body, surface, regions.of_triangle);
+  regions.body = body;
   return regions;
 }
 

@@ -6,8 +6,8 @@
 
 namespace spherechain::baker {
 
-// Segments a character by the shape of its body alone. There is no result where the body is not one closed surface or
-// lacks a limb.
-Attempt<Regions> segment_by_shape(const Character& character, const SegmentSettings& settings);
+// Segments a character by the shape of `body` alone, its largest piece or another surface made of its skin. There is no
+// result where the body is not one closed surface or lacks a limb.
+Attempt<Regions> segment_by_shape(const Character& character, const BodyMesh& body, const SegmentSettings& settings);
 
 }  // namespace spherechain::baker

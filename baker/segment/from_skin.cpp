@@ -168,7 +168,7 @@ double free_start(const SurfaceQuery& surface, const std::vector<std::uint8_t>& 
 
 }  // namespace
 
-SkinRegions segment_from_skin(const Character& character, const Roles& roles) {
+SkinRegions segment_from_skin(const Character& character, const BodyMesh& body, const Roles& roles) {
   const Mesh& mesh = character.skin;
   const std::vector<Vec3> joints = rest_positions(character.rig);
   const Neighbours neighbours = triangle_neighbours(mesh);
@@ -204,7 +204,7 @@ SkinRegions segment_from_skin(const Character& character, const Roles& roles) {
   for (std::size_t t = 0; t < regions.of_skin.size(); ++t) {
     of_source[character.skin_source_triangle[t]] = regions.of_skin[t];
   }
-  for (const Index source : character.body_source_triangle) regions.of_triangle.push_back(of_source[source]);
+  for (const Index source : body.source_triangle) regions.of_triangle.push_back(of_source[source]);
   return regions;
 }
 

@@ -19,7 +19,7 @@ struct SkinLimb {
 // Which part of the body every triangle is, as the rig's weights say.
 struct SkinRegions {
   static constexpr std::uint8_t kNoLimb = 255;  // torso, neck and head
-  std::vector<std::uint8_t> of_triangle;        // a triangle of Character::body -> index in Roles::limbs, or kNoLimb
+  std::vector<std::uint8_t> of_triangle;        // a triangle of the body -> index in Roles::limbs, or kNoLimb
   std::vector<std::uint8_t> of_skin;            // the same of Character::skin
   std::vector<SkinLimb> limbs;                  // as in Roles::limbs; a limb that moves no skin has an empty line
 };
@@ -27,6 +27,6 @@ struct SkinRegions {
 // A triangle belongs to the limb whose joints move it most. A limb begins at the first ring of rays around it that
 // meets (almost) nothing else, so that armpit and crotch belong to the torso. On each piece of the skin a region is
 // connected. The body must be of the skin, and the character have weights; `roles` are those of its rig.
-SkinRegions segment_from_skin(const Character& character, const Roles& roles);
+SkinRegions segment_from_skin(const Character& character, const BodyMesh& body, const Roles& roles);
 
 }  // namespace spherechain::baker

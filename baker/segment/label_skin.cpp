@@ -12,12 +12,12 @@ namespace {
 
 constexpr std::uint8_t kNoRegion = 255;
 
-std::vector<std::uint8_t> label_by_pieces(const Character& character, const SurfaceQuery& surface,
-                                          const std::vector<std::uint8_t>& body) {
+std::vector<std::uint8_t> label_by_pieces(const Character& character, const BodyMesh& body, const SurfaceQuery& surface,
+                                          const std::vector<std::uint8_t>& labels_of_body) {
   const Mesh& skin = character.skin;
   std::vector<std::uint8_t> of_source(character.source_triangles.size(), kNoRegion);
-  for (std::size_t t = 0; t < body.size(); ++t) {
-    if (character.body_source_triangle[t] != kNoIndex) of_source[character.body_source_triangle[t]] = body[t];
+  for (std::size_t t = 0; t < labels_of_body.size(); ++t) {
+    if (body.source_triangle[t] != kNoIndex) of_source[body.source_triangle[t]] = labels_of_body[t];
   }
   const Components pieces = connected_components(skin);
   std::vector<Vec3> centroid(pieces.count, Vec3::Zero());
@@ -28,7 +28,7 @@ std::vector<std::uint8_t> label_by_pieces(const Character& character, const Surf
   }
   std::vector<std::uint8_t> of_piece;
   for (Index piece = 0; piece < pieces.count; ++piece) {
-    of_piece.push_back(body[surface.closest(centroid[piece] / area[piece]).triangle]);
+    of_piece.push_back(labels_of_body[surface.closest(centroid[piece] / area[piece]).triangle]);
   }
   std::vector<std::uint8_t> labels;
   for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
@@ -38,17 +38,17 @@ std::vector<std::uint8_t> label_by_pieces(const Character& character, const Surf
   return labels;
 }
 
-std::uint8_t nearest_label(const Character& character, const SurfaceQuery& surface,
-                           const std::vector<std::uint8_t>& body, std::size_t t) {
+std::uint8_t nearest_label(const Character& character, const BodyMesh& body, const SurfaceQuery& surface,
+                           const std::vector<std::uint8_t>& labels_of_body, std::size_t t) {
   constexpr double kParallel = 0.5;  // cosine
   // Across a gap no wider than this many times the nearest surface's distance.
   constexpr double kFarther = 3;
   const Vec3 p = triangle_centroid(character.skin, t), normal = triangle_cross(character.skin, t).normalized();
   const auto parallel = [&](Index triangle) {
-    return std::abs(triangle_cross(character.body, triangle).normalized().dot(normal)) >= kParallel;
+    return std::abs(triangle_cross(body.mesh, triangle).normalized().dot(normal)) >= kParallel;
   };
   const SurfaceHit nearest = surface.closest(p);
-  if (parallel(nearest.triangle)) return body[nearest.triangle];
+  if (parallel(nearest.triangle)) return labels_of_body[nearest.triangle];
   double distance = kFarther * nearest.distance;
   Index best = nearest.triangle;
   for (const Vec3& direction : {normal, Vec3(-normal)}) {
@@ -57,7 +57,7 @@ std::uint8_t nearest_label(const Character& character, const SurfaceQuery& surfa
     distance = hit->distance;
     best = hit->triangle;
   }
-  return body[best];
+  return labels_of_body[best];
 }
 
 // On each piece of the skin, a region's small islands join the region with the longest common border.
@@ -89,12 +89,12 @@ void join_small_islands(const Mesh& skin, std::vector<std::uint8_t>& labels) {
 
 }  // namespace
 
-std::vector<std::uint8_t> label_skin(const Character& character, const SurfaceQuery& body,
+std::vector<std::uint8_t> label_skin(const Character& character, const BodyMesh& body, const SurfaceQuery& surface,
                                      const std::vector<std::uint8_t>& labels_of_body) {
-  if (is_part_of_skin(character)) return label_by_pieces(character, body, labels_of_body);
+  if (is_part_of_skin(body)) return label_by_pieces(character, body, surface, labels_of_body);
   std::vector<std::uint8_t> labels;
   for (std::size_t t = 0; t < character.skin.triangles.size(); ++t) {
-    labels.push_back(nearest_label(character, body, labels_of_body, t));
+    labels.push_back(nearest_label(character, body, surface, labels_of_body, t));
   }
   join_small_islands(character.skin, labels);
   return labels;

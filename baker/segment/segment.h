@@ -38,7 +38,8 @@ struct Regions {
   TorsoEnds torso;
   Polyline spine;                         // the skeleton's curve from hip to chest junction and on to the head's tip
   double spine_chest, spine_neck;         // arc lengths on `spine` of the chest junction and the neck's base
-  std::vector<std::uint8_t> of_triangle;  // a triangle of Character::body -> region
+  BodyMesh body;                          // the surface that was segmented
+  std::vector<std::uint8_t> of_triangle;  // a triangle of the body -> region
   std::vector<std::uint8_t> of_skin;      // a triangle of Character::skin -> region
 
   std::uint8_t torso_region() const { return static_cast<std::uint8_t>(limbs.size()); }

@@ -23,9 +23,9 @@ double volume(const Mesh& mesh) {
 
 }  // namespace
 
-bool covers_skin(const Character& character) {
+bool covers_skin(const BodyMesh& body, const Mesh& skin) {
   constexpr double kAll = 0.98;
-  return surface_area(character.body) > kAll * surface_area(character.skin);
+  return surface_area(body.mesh) > kAll * surface_area(skin);
 }
 
 double crack_width(const Mesh& skin) {
@@ -34,7 +34,7 @@ double crack_width(const Mesh& skin) {
   return kCrack * diameter(skin);
 }
 
-std::optional<Reason> repair_body(Character& character, ClosingReport& report) {
+Attempt<BodyMesh> repair_body(const Character& character, ClosingReport& report) {
   const Stopwatch stopwatch(report.seconds);
   const Mesh& skin = character.skin;
   const Uncracked uncracked = close_cracks(skin, crack_width(skin));
@@ -64,14 +64,12 @@ std::optional<Reason> repair_body(Character& character, ClosingReport& report) {
     const Index welded = stitched.of_vertex[piece.of_vertex[v]];
     if (welded != kNoIndex && of_skin[welded] == kNoIndex) of_skin[welded] = v;
   }
-  for (std::size_t v = 0; v < character.source_positions.size(); ++v) {
-    const Index on_skin = character.skin_of_source[v];
-    character.body_of_source[v] = on_skin == kNoIndex ? kNoIndex : of_skin[uncracked.welded_to[on_skin]];
+  BodyMesh body{std::move(piece.mesh), std::move(source_triangle), {}};
+  for (const Index on_skin : character.skin_of_source) {
+    body.of_source.push_back(on_skin == kNoIndex ? kNoIndex : of_skin[uncracked.welded_to[on_skin]]);
   }
-  character.body = std::move(piece.mesh);
-  character.body_source_triangle = std::move(source_triangle);
   report.body = BodySource::kRepaired;
-  return std::nullopt;
+  return body;
 }
 
 }  // namespace spherechain::baker

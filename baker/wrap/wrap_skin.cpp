@@ -60,16 +60,15 @@ Attempt<Wrap> wrap_skin(const Mesh& skin, const WrapSize& size, ClosingReport& r
   return wrap;
 }
 
-void use_wrap(Character& character, const Wrap& wrap, ClosingReport& report) {
-  character.body = wrap.surface;
-  character.body_source_triangle.assign(character.body.triangles.size(), kNoIndex);
-  character.body_of_source.assign(character.source_positions.size(), kNoIndex);
+BodyMesh body_of(const Wrap& wrap, const Character& character, ClosingReport& report) {
   report.body = BodySource::kWrapped;
   report.alpha = 1 / wrap.size.fineness;
   report.offset = kOffset / wrap.size.fineness;
   report.thin = wrap.thin;
   report.holes_first = wrap.size.holes_first;
   report.triangles = wrap.surface.triangles.size();
+  return {wrap.surface, std::vector<Index>(wrap.surface.triangles.size(), kNoIndex),
+          std::vector<Index>(character.source_positions.size(), kNoIndex)};
 }
 
 }  // namespace spherechain::baker

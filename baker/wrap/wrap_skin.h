@@ -26,7 +26,7 @@ inline constexpr std::size_t kWrapTrianglesMax = 100'000;
 // Counts and times itself in `report`. There is no wrap of more than kWrapTrianglesMax triangles.
 Attempt<Wrap> wrap_skin(const Mesh& skin, const WrapSize& size, ClosingReport& report);
 
-// Makes the body the wrap, and says so in `report`.
-void use_wrap(Character& character, const Wrap& wrap, ClosingReport& report);
+// The wrap as a body, which `report` then says.
+BodyMesh body_of(const Wrap& wrap, const Character& character, ClosingReport& report);
 
 }  // namespace spherechain::baker

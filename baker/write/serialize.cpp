@@ -65,7 +65,7 @@ std::vector<schema::RestPair> rest_pairs_of(const std::vector<BoundPair>& pairs)
 schema::FitError fit_error(const AssetSource& in, Ball TorsoFit::*which) {
   FError sum;
   for (const TorsoFit& fit : in.spheres.torso) {
-    const FError error = f_error(fit.*which, in.character.body, fit.vertices);
+    const FError error = f_error(fit.*which, in.regions.body.mesh, fit.vertices);
     sum.mean_abs += error.mean_abs / static_cast<double>(in.spheres.torso.size());
     sum.max_abs = std::max(sum.max_abs, error.max_abs);
   }

@@ -28,13 +28,13 @@ std::vector<VertexWeights> rigid_ends(const std::vector<Joint>& joints) {
 }
 
 void draw(const Options& options) {
-  Character character = import_character(options.character);
+  const Character character = import_character(options.character);
   const Regions regions = segment_character(character, {}, {}, Wraps::kAll)->regions;
-  const std::vector<Joint> joints = place_joints(character, regions);
+  const std::vector<Joint> joints = place_joints(regions);
   std::vector<Vec3> ends;
   for (const Joint& joint : joints) ends.insert(ends.end(), {joint.position, joint.tail});
 
-  Picture picture{character.body, {}, {}, {}, {kFront, kLeftSide, kThreeQuarter}, regions.frame, 1, options.height};
+  Picture picture{regions.body.mesh, {}, {}, {}, {kFront, kLeftSide, kThreeQuarter}, regions.frame, 1, options.height};
   if (options.back) picture.views.push_back(kBack);
   for (const std::uint8_t region : regions.of_triangle)
     picture.triangle_colours.push_back(kRegionColours[region % kRegionColours.size()]);
@@ -42,9 +42,9 @@ void draw(const Options& options) {
     const PoseMotion motion = read_pose_motion(options.poses, joints);
     const int frame = options.frame < 0 ? options.frames - 1 : options.frame;
     const double t = options.frames > 1 ? static_cast<double>(frame) / (options.frames - 1) : 1.0;
-    const std::vector<VertexWeights> weights = bone_heat_weights(character.body, joints);
+    const std::vector<VertexWeights> weights = bone_heat_weights(regions.body.mesh, joints);
     const std::vector<Affine> bones = BezierMotion(joints, regions.frame, motion).at(t).bones;
-    picture.mesh.positions = deform(character.body.positions, weights, bones);
+    picture.mesh.positions = deform(regions.body.mesh.positions, weights, bones);
     ends = deform(ends, rigid_ends(joints), bones);
   }
   if (options.bones || options.poses.empty()) {

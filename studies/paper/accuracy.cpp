@@ -91,7 +91,7 @@ AccuracyTables measure_accuracy(const Study& study, const Bake& bake) {
                        "vertices_phi1_adjusted_mm", "vertices_phi2_mm", "rays_better_phi1_adjusted", "rays_better_phi2",
                        "phi1_adjusted_better_at", "phi2_better_at"},
                       {}}};
-  const baker::SurfaceQuery torso(bake.character.body, triangles_of_region(bake.regions, baker::kTorso));
+  const baker::SurfaceQuery torso(bake.regions.body.mesh, triangles_of_region(bake.regions, baker::kTorso));
   const int rays = bake.settings.fit.rays;
   for (std::size_t s = 0; s < bake.spheres.torso.size(); ++s) {
     const baker::FittedSphere& sphere = bake.spheres.spheres[s];
@@ -132,7 +132,7 @@ AccuracyTables measure_accuracy(const Study& study, const Bake& bake) {
       row.push_back(mean(values));
     }
     for (const Ball* ball : {&fit.phi1, &fit.phi1_adjusted, &fit.phi2}) {
-      row.push_back(study.mm() * f_error(*ball, bake.character.body, fit.vertices).mean_abs);
+      row.push_back(study.mm() * f_error(*ball, bake.regions.body.mesh, fit.vertices).mean_abs);
     }
     std::vector<bool> adjusted, enclosing;
     for (std::size_t i = 0; i < half.size(); ++i) {

@@ -83,7 +83,7 @@ void run(const Options& options) {
   progress("bake and both animations");
   const Study study(options.character, options.poses, 40);
   progress("points inside and on the skin");
-  const baker::SampledBody samples(study.paper().character.body, options.quick ? 2000 : 10000);
+  const baker::SampledBody samples(study.paper().regions.body.mesh, options.quick ? 2000 : 10000);
 
   Results results;
   results.machine = machine();

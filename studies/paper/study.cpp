@@ -8,7 +8,7 @@ namespace {
 
 std::vector<bool> core_triangles(const Bake& bake) {
   const baker::Regions& regions = bake.regions;
-  const baker::Mesh& mesh = bake.character.body;
+  const baker::Mesh& mesh = bake.regions.body.mesh;
   std::vector<bool> core;
   for (Index t = 0; t < mesh.triangles.size(); ++t) {
     const Vec3 centroid = triangle_centroid(mesh, t);
@@ -28,7 +28,7 @@ Study::Study(const std::filesystem::path& character, const std::filesystem::path
     : paper_(baker::bake(character, baker::make_settings("paper", "{}", "paper"), {})),
       balanced_(rebake(paper_, baker::make_settings("balanced", "{}", "balanced"))),
       core_(core_triangles(paper_)) {
-  const std::vector<baker::VertexWeights> weights = rig_weights(paper_.character, paper_.joints);
+  const std::vector<baker::VertexWeights> weights = rig_weights(paper_.character, paper_.regions.body, paper_.joints);
   for (const std::string name : {"arms", "legs"}) {
     const baker::BezierMotion motion(paper_.joints, paper_.regions.frame,
                                      read_pose_motion(poses / ("animation_" + name + ".json"), paper_.joints));

@@ -63,7 +63,7 @@ Columns count(const Bake& bake) {
 
 // |F| over the vertices of the torso's bands, and over every vertex of the surrounding regions the paper covers.
 Columns fit_error(const Study& study, const Bake& bake) {
-  const baker::Mesh& mesh = bake.character.body;
+  const baker::Mesh& mesh = bake.regions.body.mesh;
   std::vector<double> torso, core;
   for (std::size_t s = 0; s < bake.spheres.torso.size(); ++s) {
     const Ball& ball = bake.spheres.spheres[s].ball;
@@ -74,7 +74,7 @@ Columns fit_error(const Study& study, const Bake& bake) {
   std::vector<std::uint32_t> last_owner(mesh.positions.size(), baker::kNoIndex);
   const std::vector<Index>& skin = bake.character.skin_source_triangle;  // ascending, as the body's are
   for (Index t = 0; t < mesh.triangles.size(); ++t) {
-    const auto at = std::lower_bound(skin.begin(), skin.end(), bake.character.body_source_triangle[t]) - skin.begin();
+    const auto at = std::lower_bound(skin.begin(), skin.end(), bake.regions.body.source_triangle[t]) - skin.begin();
     const std::uint32_t s = bake.binding.sphere_of_triangle[static_cast<std::size_t>(at)];
     for (const Index v : mesh.triangles[t]) {
       if (!study.core()[t] || last_owner[v] == s) continue;

@@ -79,7 +79,7 @@ TEST_CASE(
     for (std::size_t i = 0; i < spheres.size(); ++i) {
       Vec3 center = Vec3::Zero();
       for (const BoundPivot& pivot : spheres[i].pivots) {
-        center += pivot.weight * triangle_centroid(bake.character.body, pivot.triangle);
+        center += pivot.weight * triangle_centroid(bake.regions.body.mesh, pivot.triangle);
       }
       CHECK((center - bake.spheres.spheres[i].ball.center).norm() < 1e-9);
       CHECK(spheres[i].weight_sum <= 1.5);

@@ -71,8 +71,8 @@ bool is_near(const Vec3& a, const Vec3& b) { return (a - b).norm() < 1e-9; }
 Fitted quadruped(const SourceMesh& mesh) {
   Fitted out;
   out.character = build_character(mesh, "quadruped");
-  out.regions = *segment_by_shape(out.character, {});
-  out.spheres = *fit_spheres(out.character, out.regions, {});
+  out.regions = *segment_by_shape(out.character, out.character.largest_piece, {});
+  out.spheres = *fit_spheres(out.regions, {});
   return out;
 }
 

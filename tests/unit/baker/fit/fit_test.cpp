@@ -32,7 +32,7 @@ double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
 }
 
 double distance_to_region(const Bake& bake, const Vec3& p, std::uint8_t region) {
-  const Mesh& mesh = bake.character.body;
+  const Mesh& mesh = bake.regions.body.mesh;
   double least = 1e9;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (bake.regions.of_triangle[t] != region) continue;
@@ -120,7 +120,7 @@ TEST_CASE("left and right limbs have the same number of spheres, mirrored to 1.5
 TEST_CASE("head, hands and feet are filled to their ends: crown, heel, toes and fingertips") {
   const Bake& bake = baked_human();
   const BodyFrame& frame = bake.regions.frame;
-  const Mesh& mesh = bake.character.body;
+  const Mesh& mesh = bake.regions.body.mesh;
   // From the region's vertex farthest in a direction, of those lower than `below`, to its nearest sphere, in fractions
   // of the height.
   const auto gap = [&](std::uint8_t region, const Vec3& direction, double below = 1e9) {
@@ -186,12 +186,12 @@ TEST_CASE("other bodies get extremities too" * doctest::skip(std::getenv("SPHERE
     CAPTURE(file);
     const std::string path = std::string(std::getenv("SPHERECHAIN_TEST_DATA")) + "/" + file;
     const Character character = build_character(read_with_assimp(path), file);
-    const Regions regions = *segment_by_shape(character, {});
+    const Regions regions = *segment_by_shape(character, character.largest_piece, {});
     std::array<double, 2> distances{};
     for (const bool extremities : {false, true}) {
       FitSettings settings;
       settings.extremities = extremities;
-      const Spheres spheres = *fit_spheres(character, regions, settings);
+      const Spheres spheres = *fit_spheres(regions, settings);
       distances[extremities ? 1 : 0] =
           measure_fit(character, regions, *bind_spheres(character, regions, spheres, {})).distance_mean;
     }
@@ -215,7 +215,7 @@ TEST_CASE("left spheres are on the character's left, and levels climb") {
 
 TEST_CASE("the sphere adjustment lowers mean |F| of every torso sphere or leaves it; phi2 encloses its points") {
   const Bake& bake = baked_human();
-  const Mesh& mesh = bake.character.body;
+  const Mesh& mesh = bake.regions.body.mesh;
   std::string table = fmt::format("mean |F| in mm\n{:<8} {:>8} {:>8} {:>8}\n", "sphere", "phi1", "phi1'", "phi2");
   Vec3 means = Vec3::Zero();
   for (std::size_t i = 0; i < bake.spheres.torso.size(); ++i) {
@@ -245,7 +245,7 @@ TEST_CASE("the sphere adjustment lowers mean |F| of every torso sphere or leaves
 
 TEST_CASE("a torso level has one, two or three spheres, and its parts share out all of its band") {
   const HumanFixture& fixture = human();
-  const Mesh& mesh = fixture.character.body;
+  const Mesh& mesh = fixture.regions.body.mesh;
   const BodyFrame& frame = fixture.regions.frame;
   const std::array<std::vector<Side>, 3> sides{
       {{Side::kNone}, {Side::kLeft, Side::kRight}, {Side::kLeft, Side::kNone, Side::kRight}}};

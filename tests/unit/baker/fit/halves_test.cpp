@@ -81,7 +81,7 @@ FittedCharacter fitted(const SourceMesh& mesh, const BakeSettings& settings = {}
 // Checks the rules that every such fit follows.
 void check_fit(const FittedCharacter& fit, std::size_t most) {
   const Regions& regions = fit.segmentation.regions;
-  const Mesh& skin = fit.character.skin;
+  const Mesh& skin = fit.segmentation.regions.body.mesh;
   REQUIRE(regions.is_tree());
   REQUIRE(regions.parents.size() == regions.count());
   for (std::uint8_t region = 0; region < regions.count(); ++region) {
@@ -112,7 +112,7 @@ TEST_CASE("a hand that the march has no limbs for is fitted by its bones: each f
   const Regions& regions = fit.segmentation.regions;
   REQUIRE(regions.count() == made.tubes.size());
   CHECK(regions.torso_name == "palm");
-  const Mesh& skin = fit.character.skin;
+  const Mesh& skin = fit.segmentation.regions.body.mesh;
   for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
     std::size_t nearest = 0;
     for (std::size_t i = 1; i < made.tubes.size(); ++i) {
@@ -245,23 +245,23 @@ TEST_CASE("along a tree of parts every two spheres of different leaves share a c
 
 TEST_CASE("limbs that are kept have the march's spheres, and the rest of the body follows its bones") {
   FittedCharacter fit;
-  fit.character = import_character(kModels / "X/Testwuson.X");  // a wolf
-  const Roles roles = find_roles(fit.character.rig, fit.character.source_positions, {}, BodyKind::kUnknown);
-  const Attempt<Segmentation> found = segment_character(fit.character, roles, {}, Wraps::kUnmoved);
+  const Character character = import_character(kModels / "X/Testwuson.X");  // a wolf
+  const Roles roles = find_roles(character.rig, character.source_positions, {}, BodyKind::kUnknown);
+  const Attempt<Segmentation> found = segment_character(character, roles, {}, Wraps::kUnmoved);
   REQUIRE(found);
-  const Attempt<Spheres> march = fit_spheres(fit.character, found->regions, {});
+  const Attempt<Spheres> march = fit_spheres(found->regions, {});
   REQUIRE(march);
   std::vector<bool> kept(found->regions.count(), true);
   kept[found->regions.torso_region()] = false;
-  MixedRegions mixed = segment_rest_by_bones(fit.character, found->regions, kept, roles, 40);
+  MixedRegions mixed = segment_rest_by_bones(character, found->regions, kept, roles, 40);
   fit.segmentation.regions = mixed.regions;
-  fit.spheres = fit_halves(fit.character, mixed.regions, {}, {&*march, mixed.kept});
-  const Attempt<Binding> binding = bind_spheres(fit.character, mixed.regions, fit.spheres, {});
+  fit.spheres = fit_halves(character, mixed.regions, {}, {&*march, mixed.kept});
+  const Attempt<Binding> binding = bind_spheres(character, mixed.regions, fit.spheres, {});
   REQUIRE(binding);
   fit.binding = *binding;
   check_fit(fit, kHalvedSpheresMax);
   const Regions& regions = fit.segmentation.regions;
-  const Mesh& skin = fit.character.skin;
+  const Mesh& skin = character.skin;
   std::set<std::string> legs;
   for (std::size_t region = 0; region < regions.count(); ++region) {
     const std::vector<std::uint32_t>& spheres = fit.spheres.of_region[region];
@@ -284,7 +284,7 @@ TEST_CASE("limbs that are kept have the march's spheres, and the rest of the bod
   }
   CHECK(legs == std::set<std::string>{"left_foreleg", "right_foreleg", "left_hindleg", "right_hindleg"});
   // A bone with most of its skin on a kept leg has all of it there.
-  const std::vector<int> nodes = heaviest_nodes(fit.character);
+  const std::vector<int> nodes = heaviest_nodes(character);
   std::map<int, std::map<std::uint8_t, double>> areas;
   for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
     CHECK(regions.of_skin[t] == fit.spheres.spheres[fit.binding.sphere_of_triangle[t]].region);
@@ -350,7 +350,7 @@ TEST_CASE("spheres stand along long triangles, and each has a triangle of its ow
 
 TEST_CASE("a sphere follows skin that moves alike: it neither grows nor leaves its skin where other bones tear away") {
   const FittedCharacter fit = fitted(two_bars());
-  const Mesh& rest = fit.character.skin;
+  const Mesh& rest = fit.segmentation.regions.body.mesh;
   for (std::size_t i = 0; i < fit.spheres.spheres.size(); ++i) {
     const BoundSphere& sphere = fit.binding.spheres[i];
     CAPTURE(i);

@@ -23,7 +23,7 @@ namespace {
 // The human as a skinned mesh on one joint, scaled to centimetres under a root that scales back, with a staff on the
 // joint.
 Glb human_with_staff() {
-  const Mesh& body = human().character.body;
+  const Mesh& body = human().regions.body.mesh;
   Glb glb;
   std::vector<float> positions;
   for (const Vec3& p : body.positions) {
@@ -71,7 +71,7 @@ TEST_CASE("an asset baked with attachments finds the same source again, and fits
   BakeSettings settings = make_settings("paper", R"({"attachments": true})", "");
   const Bake baked = bake(source, settings, {});
   CHECK(baked.character.metres_per_unit == doctest::Approx(0.01));
-  CHECK(baked.character.source_positions.size() == human().character.body.positions.size() + 8);
+  CHECK(baked.character.source_positions.size() == human().regions.body.mesh.positions.size() + 8);
   folder.write("staff.sphc", {baked.asset.begin(), baked.asset.end()});
 
   const AnimatedAsset animated(asset.string(), source.string(), {}, {});

@@ -51,22 +51,22 @@ Variant make_variant(const SourceMesh& original, const Change& change) {
     mesh.triangles[variant.triangle_place[t]] = {vertex_place[v[1]], vertex_place[v[2]], vertex_place[v[0]]};
   }
   variant.character = build_character(mesh, change.name);
-  variant.regions = *segment_by_shape(variant.character, {});
-  variant.spheres = *fit_spheres(variant.character, variant.regions, {});
+  variant.regions = *segment_by_shape(variant.character, variant.character.largest_piece, {});
+  variant.spheres = *fit_spheres(variant.regions, {});
   return variant;
 }
 
 // Share of the body's area with the same label before and after.
 double equal_area(const Bake& before, const Variant& after) {
   std::vector<int> label(before.character.source_triangles.size(), -1);
-  for (std::size_t t = 0; t < after.character.body.triangles.size(); ++t) {
-    label[after.character.body_source_triangle[t]] = after.regions.of_triangle[t];
+  for (std::size_t t = 0; t < after.regions.body.mesh.triangles.size(); ++t) {
+    label[after.regions.body.source_triangle[t]] = after.regions.of_triangle[t];
   }
   double equal = 0, all = 0;
-  for (std::size_t t = 0; t < before.character.body.triangles.size(); ++t) {
-    const double area = triangle_area(before.character.body, t);
+  for (std::size_t t = 0; t < before.regions.body.mesh.triangles.size(); ++t) {
+    const double area = triangle_area(before.regions.body.mesh, t);
     all += area;
-    if (label[after.triangle_place[before.character.body_source_triangle[t]]] == before.regions.of_triangle[t])
+    if (label[after.triangle_place[before.regions.body.source_triangle[t]]] == before.regions.of_triangle[t])
       equal += area;
   }
   return equal / all;

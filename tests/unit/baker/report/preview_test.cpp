@@ -139,7 +139,7 @@ double height(const Bake& bake) { return bake.regions.frame.height * bake.charac
 Bake moved(Bake bake, const Eigen::Matrix3d& rotation, double scale, const Vec3& shift) {
   const auto move = [&](Vec3& p) { p = scale * rotation * p + shift; };
   for (auto* points :
-       {&bake.character.source_positions, &bake.character.body.positions, &bake.character.skin.positions})
+       {&bake.character.source_positions, &bake.regions.body.mesh.positions, &bake.character.skin.positions})
     for (Vec3& p : *points) move(p);
   for (Joint& joint : bake.joints) {
     move(joint.position);
@@ -280,7 +280,7 @@ TEST_CASE(
   const Bake& bake = baked_human();
   const spherechain::baker::OpenAsset asset = open_asset_of(bake);
   const std::vector<std::string> names = names_of_spheres(asset);
-  const std::vector<VertexWeights> weights = rig_weights(bake.character, bake.joints);
+  const std::vector<VertexWeights> weights = rig_weights(bake.character, bake.regions.body, bake.joints);
   for (const char* name : {"left_elbow", "right_hip"}) {
     INFO(name);
     Pose pose;

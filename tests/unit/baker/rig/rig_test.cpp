@@ -17,7 +17,8 @@ namespace {
 Character moved(const Character& character, const Eigen::Matrix3d& rotation, double scale, const Vec3& shift) {
   SourceMesh source;
   for (const Vec3& p : character.source_positions) source.positions.push_back(scale * rotation * p + shift);
-  for (const Index t : character.body_source_triangle) source.triangles.push_back(character.source_triangles[t]);
+  for (const Index t : character.largest_piece.source_triangle)
+    source.triangles.push_back(character.source_triangles[t]);
   return build_character(source, "moved");
 }
 
@@ -70,7 +71,7 @@ TEST_CASE("joints turn, move and scale with the mesh") {
   const Eigen::Matrix3d rotation = Eigen::AngleAxisd(1.1, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
   const Vec3 shift(30, -200, 75);
   const Character other = moved(h.character, rotation, 100, shift);
-  const std::vector<Joint> joints = place_joints(other, *segment_by_shape(other, {}));
+  const std::vector<Joint> joints = place_joints(*segment_by_shape(other, other.largest_piece, {}));
   REQUIRE(joints.size() == h.joints.size());
   for (std::size_t j = 0; j < joints.size(); ++j) {
     INFO(joints[j].name);
@@ -174,12 +175,12 @@ TEST_CASE("arms do not pull at the flank across the gap") {
 
 TEST_CASE("every source vertex has weights, and the eyes go with the head") {
   const RiggedHuman& h = rigged_human();
-  const std::vector<VertexWeights> weights = rig_weights(h.character, h.joints);
+  const std::vector<VertexWeights> weights = rig_weights(h.character, h.character.largest_piece, h.joints);
   REQUIRE(weights.size() == h.character.source_positions.size());
   std::size_t others = 0;
   for (std::size_t v = 0; v < weights.size(); ++v) {
     REQUIRE(weights[v].weight[0] > 0);
-    if (h.character.body_of_source[v] != kNoIndex) continue;
+    if (h.character.largest_piece.of_source[v] != kNoIndex) continue;
     ++others;
     CHECK(weights[v].joint[0] == h.joint("head"));
     CHECK(weights[v].weight[0] > 0.8);

@@ -74,9 +74,9 @@ TEST_CASE("a facing direction may say what the rig says; across it, or against i
   const auto reason_against = [&](const Vec3& facing) -> std::string {
     SegmentSettings settings;
     settings.facing = facing;
-    const Attempt<Regions> regions = segment_by_rig(bake.character, bake.roles, settings);
+    const Attempt<Regions> regions = segment_by_rig(bake.character, bake.regions.body, bake.roles, settings);
     if (!regions) return regions.reason().what;
-    CHECK(regions->of_skin == segment_by_rig(bake.character, bake.roles, {})->of_skin);
+    CHECK(regions->of_skin == segment_by_rig(bake.character, bake.regions.body, bake.roles, {})->of_skin);
     return "none";
   };
   const BodyFrame& frame = bake.regions.frame;
@@ -91,7 +91,7 @@ TEST_CASE("a rig without a trunk is refused as no body") {
   const Character& character = person_in_pieces().character;
   Roles none;
   none.of_node.resize(character.rig.nodes.size());
-  const Attempt<Regions> regions = segment_by_rig(character, none, {});
+  const Attempt<Regions> regions = segment_by_rig(character, character.largest_piece, none, {});
   REQUIRE_FALSE(regions);
   CHECK(regions.reason().what.find("no trunk") != std::string::npos);
 }

@@ -28,7 +28,7 @@ Character with_rig(const RiggedHuman& human) {
     character.rig.bones.push_back({static_cast<Index>(character.rig.nodes.size()), inverse_bind});
     character.rig.nodes.push_back(node);
   }
-  character.rig.weights = rig_weights(character, human.joints);
+  character.rig.weights = rig_weights(character, character.largest_piece, human.joints);
   return character;
 }
 
@@ -36,7 +36,7 @@ struct SkinnedHuman {
   RiggedHuman human;
   Character character = with_rig(human);
   Roles roles = find_roles(character.rig, character.source_positions);
-  SkinRegions regions = segment_from_skin(character, roles);
+  SkinRegions regions = segment_from_skin(character, character.largest_piece, roles);
 };
 
 const SkinnedHuman& skinned_human() {
@@ -50,10 +50,10 @@ double agreement(const Character& character, const SkinRegions& skin, const Regi
   for (std::size_t t = 0; t < skin.of_triangle.size(); ++t) {
     const bool torso = skin.of_triangle[t] == SkinRegions::kNoLimb;
     if ((torso ? shape.torso_region() : skin.of_triangle[t]) == shape.of_triangle[t]) {
-      same += triangle_area(character.body, t);
+      same += triangle_area(character.largest_piece.mesh, t);
     }
   }
-  return same / surface_area(character.body);
+  return same / surface_area(character.largest_piece.mesh);
 }
 
 // Pieces of each label, over shared edges.
@@ -91,16 +91,18 @@ TEST_CASE("regions from skin agree with regions from shape on a MakeHuman body w
   const char* folder = std::getenv("SPHERECHAIN_TEST_DATA");
   if (folder == nullptr) return;
   const Character character = import_character(std::string(folder) + "/mh_boxing.glb");
-  const SkinRegions skin = segment_from_skin(character, find_roles(character.rig, character.source_positions));
-  CHECK(agreement(character, skin, *segment_by_shape(character, {})) >= 0.95);
+  const SkinRegions skin =
+      segment_from_skin(character, character.largest_piece, find_roles(character.rig, character.source_positions));
+  CHECK(agreement(character, skin, *segment_by_shape(character, character.largest_piece, {})) >= 0.95);
 }
 
 TEST_CASE("every region from skin is one piece, and eyes are the head's") {
   const SkinnedHuman& human = skinned_human();
-  CHECK(count_pieces(human.character.body, human.regions.of_triangle) == 5);
+  CHECK(count_pieces(human.character.largest_piece.mesh, human.regions.of_triangle) == 5);
   CHECK(std::set<std::uint8_t>(human.regions.of_triangle.begin(), human.regions.of_triangle.end()).size() == 5);
   REQUIRE(human.regions.of_skin.size() == human.character.skin.triangles.size());
-  std::set<Index> body(human.character.body_source_triangle.begin(), human.character.body_source_triangle.end());
+  std::set<Index> body(human.character.largest_piece.source_triangle.begin(),
+                       human.character.largest_piece.source_triangle.end());
   std::size_t others = 0;
   for (std::size_t t = 0; t < human.regions.of_skin.size(); ++t) {
     if (body.count(human.character.skin_source_triangle[t]) > 0) continue;
@@ -121,8 +123,8 @@ TEST_CASE("a patch of skin that hangs on the wrong joint joins what is around it
     if (height > crown - 0.02) weights = {{wrist}, {1.0}};
     if (height > 0.35 && height < 0.37) weights = {};
   }
-  const SkinRegions regions = segment_from_skin(human.character, human.roles);
-  CHECK(count_pieces(human.character.body, regions.of_triangle) == 5);
+  const SkinRegions regions = segment_from_skin(human.character, human.character.largest_piece, human.roles);
+  CHECK(count_pieces(human.character.largest_piece.mesh, regions.of_triangle) == 5);
   CHECK(agreement(human.character, regions, ::human().regions) >= 0.95);
 }
 
@@ -138,7 +140,7 @@ TEST_CASE("a limb's line runs from its cut through its joints to its tip") {
     CHECK((limb.line.at(0) - shape.line.at(0)).norm() < 0.05 * height);
     CHECK((limb.line.at(limb.extremity) - shape.line.at(shape.extremity)).norm() < 0.05 * height);
     // The triangles along it are the limb's.
-    const SurfaceQuery surface(human.character.body);
+    const SurfaceQuery surface(human.character.largest_piece.mesh);
     for (int k = 1; k < 10; ++k) {
       const Index t = surface.closest(limb.line.at(0.1 * k * limb.line.length())).triangle;
       CHECK(human.regions.of_triangle[t] == i);
@@ -154,7 +156,7 @@ TEST_CASE("a limb that moves no skin has no triangles and no line") {
       if (human.roles.of_node[weights.joint[k]].limb == 1) weights.joint[k] = chest;
     }
   }
-  const SkinRegions regions = segment_from_skin(human.character, human.roles);
+  const SkinRegions regions = segment_from_skin(human.character, human.character.largest_piece, human.roles);
   CHECK(regions.limbs[1].line.points().empty());
   CHECK(std::count(regions.of_triangle.begin(), regions.of_triangle.end(), 1) == 0);
   CHECK(std::count(regions.of_triangle.begin(), regions.of_triangle.end(), 0) > 0);

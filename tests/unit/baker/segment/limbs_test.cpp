@@ -16,7 +16,8 @@ using namespace spherechain::baker;
 namespace {
 
 Attempt<Regions> try_to_segment(const SourceMesh& source, const SegmentSettings& settings) {
-  return segment_by_shape(build_character(source, "creature.obj"), settings);
+  const Character character = build_character(source, "creature.obj");
+  return segment_by_shape(character, character.largest_piece, settings);
 }
 
 Regions segmented(const SourceMesh& source, const SegmentSettings& settings = {}) {
@@ -42,10 +43,6 @@ double distance_to_axes(const std::vector<Tube>& tubes, const Vec3& p) {
     least = std::min(least, (p - tube.from - f * axis).norm());
   }
   return least;
-}
-
-Spheres fitted(const SourceMesh& source, const Regions& regions) {
-  return *fit_spheres(build_character(source, "creature.obj"), regions, {});
 }
 
 std::string reason_against(const SourceMesh& source, const SegmentSettings& settings) {
@@ -82,7 +79,7 @@ TEST_CASE("a quadruped without a rig has forelegs, hind legs, neck, tail and tru
 
 TEST_CASE("a quadruped's spheres follow the tubes it is made of" * doctest::test_suite("many bakes")) {
   const Regions regions = segmented(quadruped());
-  const Spheres spheres = fitted(quadruped(), regions);
+  const Spheres spheres = *fit_spheres(regions, {});
   for (std::size_t i = 0; i < spheres.spheres.size(); ++i) {
     const FittedSphere& sphere = spheres.spheres[i];
     const double off = distance_to_axes(quadruped_tubes(), sphere.ball.center);
@@ -133,7 +130,7 @@ TEST_CASE("what the body is taken for can be said: a human goes on all fours, an
   CHECK(reason_against(melt(six_legged_tubes(), 0.045), BodyKind::kQuadruped).find("quadruped") != std::string::npos);
   SegmentSettings settings;
   settings.body = BodyKind::kQuadruped;
-  const Regions regions = *segment_by_shape(human().character, settings);
+  const Regions regions = *segment_by_shape(human().character, human().regions.body, settings);
   REQUIRE(regions.limbs.size() >= 4);
   CHECK(regions.name(0) == "left_foreleg");
   CHECK(regions.name(3) == "right_hindleg");
@@ -152,7 +149,7 @@ TEST_CASE("a six-legged creature has three pairs from the front, each where it l
     CHECK(std::abs(foot.z() - 1.4 * (0.42 - 0.42 * static_cast<double>(i / 2))) < 0.1);
     CHECK(std::abs(regions.limbs[i].along - kAlong[i / 2]) < 0.1);
   }
-  const Spheres spheres = fitted(mesh, regions);
+  const Spheres spheres = *fit_spheres(regions, {});
   for (const FittedSphere& sphere : spheres.spheres) {
     CHECK(distance_to_axes(six_legged_tubes(), sphere.ball.center) < 0.05);
   }
@@ -163,7 +160,7 @@ TEST_CASE("a snake is one tubular chain from the tail's tip to the head" * docte
   const Regions regions = segmented(mesh);
   REQUIRE(names(regions) == std::vector<std::string>{"body"});
   CHECK_FALSE(regions.has_torso);
-  const Spheres spheres = fitted(mesh, regions);
+  const Spheres spheres = *fit_spheres(regions, {});
   REQUIRE(spheres.spheres.size() > 10);
   for (std::size_t i = 0; i < spheres.spheres.size(); ++i) {
     CHECK(distance_to_axes(snake_tubes(), spheres.spheres[i].ball.center) < 0.02);

@@ -22,14 +22,15 @@ namespace {
 
 double area_of(const Bake& bake, std::uint8_t region) {
   double area = 0;
-  for (std::size_t t = 0; t < bake.character.body.triangles.size(); ++t) {
-    if (bake.regions.of_triangle[t] == region) area += triangle_area(bake.character.body, t);
+  for (std::size_t t = 0; t < bake.regions.body.mesh.triangles.size(); ++t) {
+    if (bake.regions.of_triangle[t] == region) area += triangle_area(bake.regions.body.mesh, t);
   }
   return area;
 }
 
 std::string segmentation_error(const SourceMesh& source, const SegmentSettings& settings = {}) {
-  const Attempt<Regions> regions = segment_by_shape(build_character(source, "test.obj"), settings);
+  const Character character = build_character(source, "test.obj");
+  const Attempt<Regions> regions = segment_by_shape(character, character.largest_piece, settings);
   return regions ? "no error" : regions.reason().what;
 }
 
@@ -37,13 +38,13 @@ std::string segmentation_error(const SourceMesh& source, const SegmentSettings& 
 
 TEST_CASE("every triangle has one of the five regions, and so has every triangle of the eyes") {
   const Bake& bake = baked_human();
-  REQUIRE(bake.regions.of_triangle.size() == bake.character.body.triangles.size());
+  REQUIRE(bake.regions.of_triangle.size() == bake.regions.body.mesh.triangles.size());
   CHECK(*std::max_element(bake.regions.of_triangle.begin(), bake.regions.of_triangle.end()) == kTorso);
   REQUIRE(bake.regions.of_skin.size() == bake.character.skin.triangles.size());
   // The eyes are in the head, and the head is the torso's.
   for (std::size_t t = 0; t < bake.regions.of_skin.size(); ++t) {
     const Index corner = bake.character.source_triangles[bake.character.skin_source_triangle[t]][0];
-    if (bake.character.body_of_source[corner] == kNoIndex) REQUIRE(bake.regions.of_skin[t] == kTorso);
+    if (bake.regions.body.of_source[corner] == kNoIndex) REQUIRE(bake.regions.of_skin[t] == kTorso);
   }
 }
 
@@ -51,14 +52,15 @@ TEST_CASE("a body of four times as many triangles has the same regions" * doctes
   BrokenBody fine = intact_body();  // its skeleton is that of a simplified copy
   subdivide(fine, 1);
   const Character character = build_character(fine.source, "test.obj");
-  const Attempt<Regions> regions = segment_by_shape(character, {});
+  const Attempt<Regions> regions = segment_by_shape(character, character.largest_piece, {});
   REQUIRE(regions);
   double same = 0;
-  for (std::size_t t = 0; t < character.body.triangles.size(); ++t) {
-    const Index intact = fine.of_intact[character.body_source_triangle[t]];
-    if (regions->of_triangle[t] == human().regions.of_triangle[intact]) same += triangle_area(character.body, t);
+  for (std::size_t t = 0; t < character.largest_piece.mesh.triangles.size(); ++t) {
+    const Index intact = fine.of_intact[character.largest_piece.source_triangle[t]];
+    if (regions->of_triangle[t] == human().regions.of_triangle[intact])
+      same += triangle_area(character.largest_piece.mesh, t);
   }
-  CHECK(same > 0.99 * surface_area(character.body));
+  CHECK(same > 0.99 * surface_area(character.largest_piece.mesh));
 }
 
 TEST_CASE("neighbours are the two triangles of an edge; open are the edges that not two use, one each way") {
@@ -98,7 +100,7 @@ TEST_CASE("neighbours are the two triangles of an edge; open are the edges that 
 
 TEST_CASE("each region is one piece, joined over shared edges") {
   const Bake& bake = baked_human();
-  const Mesh& mesh = bake.character.body;
+  const Mesh& mesh = bake.regions.body.mesh;
   std::map<std::pair<Index, Index>, std::vector<Index>> edges;
   for (Index t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k)
@@ -154,7 +156,7 @@ TEST_CASE("a facing direction in the settings overrides the feet and swaps left 
           doctest::test_suite("many bakes")) {
   SegmentSettings settings;
   settings.facing = -Vec3::UnitZ();
-  const Regions turned = *segment_by_shape(baked_human().character, settings);
+  const Regions turned = *segment_by_shape(baked_human().character, baked_human().regions.body, settings);
   CHECK(turned.frame.forward.dot(Vec3::UnitZ()) < -0.999);
   const auto& usual = baked_human().regions.of_triangle;
   std::size_t swapped = 0;
@@ -162,7 +164,7 @@ TEST_CASE("a facing direction in the settings overrides the feet and swaps left 
   for (std::size_t t = 0; t < usual.size(); ++t) swapped += turned.of_triangle[t] == kSwap[usual[t]] ? 1u : 0u;
   CHECK(static_cast<double>(swapped) > 0.99 * static_cast<double>(usual.size()));
   settings.facing = Vec3::UnitX();
-  const Attempt<Regions> sideways = segment_by_shape(baked_human().character, settings);
+  const Attempt<Regions> sideways = segment_by_shape(baked_human().character, baked_human().regions.body, settings);
   REQUIRE_FALSE(sideways);
   CHECK(sideways.reason().what.find("facing direction") != std::string::npos);
 }

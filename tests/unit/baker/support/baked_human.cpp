@@ -9,7 +9,8 @@ using namespace spherechain::baker;
 namespace {
 
 const std::vector<VertexWeights>& human_weights() {
-  static const std::vector<VertexWeights> weights = rig_weights(baked_human().character, baked_human().joints);
+  const Bake& bake = baked_human();
+  static const std::vector<VertexWeights> weights = rig_weights(bake.character, bake.regions.body, bake.joints);
   return weights;
 }
 

@@ -46,8 +46,8 @@ BrokenBody intact_body() {
   const Character& character = human().character;
   BrokenBody body;
   body.source.importer = "test";
-  body.source.positions = character.body.positions;
-  body.source.triangles = character.body.triangles;
+  body.source.positions = character.largest_piece.mesh.positions;
+  body.source.triangles = character.largest_piece.mesh.triangles;
   for (Index t = 0; t < body.source.triangles.size(); ++t) body.of_intact.push_back(t);
   return body;
 }
@@ -145,10 +145,10 @@ void split_one_side(BrokenBody& body, double share) {
 
 void cut_hole(BrokenBody& body, const Vec3& place, double radius) {
   const HumanFixture& intact = human();
-  const Vec3 center = SurfaceQuery(intact.character.body).closest(at(place)).point;
+  const Vec3 center = SurfaceQuery(intact.regions.body.mesh).closest(at(place)).point;
   keep_where(body, [&](Index t) {
     return body.of_intact[t] == kNoIndex ||
-           (triangle_centroid(intact.character.body, body.of_intact[t]) - center).norm() >
+           (triangle_centroid(intact.regions.body.mesh, body.of_intact[t]) - center).norm() >
                radius * intact.regions.frame.height;
   });
 }

@@ -65,11 +65,11 @@ SourceMesh ball_mesh(int rings) {
 SourceMesh without_region(const Bake& bake, std::uint8_t region, std::uint8_t other) {
   SourceMesh mesh;
   mesh.importer = "test";
-  mesh.positions = bake.character.body.positions;
+  mesh.positions = bake.regions.body.mesh.positions;
   std::map<std::pair<Index, Index>, bool> directed;
-  for (std::size_t t = 0; t < bake.character.body.triangles.size(); ++t) {
+  for (std::size_t t = 0; t < bake.regions.body.mesh.triangles.size(); ++t) {
     if (bake.regions.of_triangle[t] == region || bake.regions.of_triangle[t] == other) continue;
-    const Triangle& v = bake.character.body.triangles[t];
+    const Triangle& v = bake.regions.body.mesh.triangles[t];
     mesh.triangles.push_back(v);
     for (std::size_t k = 0; k < 3; ++k) directed[{v[k], v[(k + 1) % 3]}] = true;
   }

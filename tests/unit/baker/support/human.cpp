@@ -6,7 +6,7 @@ using namespace spherechain::baker;
 const HumanFixture& human() {
   static const HumanFixture fixture = [] {
     Character character = import_character(kHumanFile);
-    Regions regions = *segment_by_shape(character, {});
+    Regions regions = *segment_by_shape(character, character.largest_piece, {});
     return HumanFixture{std::move(character), std::move(regions)};
   }();
   return fixture;

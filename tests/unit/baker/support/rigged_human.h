@@ -14,8 +14,8 @@
 struct RiggedHuman {
   const spherechain::baker::Character& character = human().character;
   const spherechain::baker::BodyFrame& frame = human().regions.frame;
-  const spherechain::baker::Mesh& body = character.body;
-  std::vector<spherechain::baker::Joint> joints = place_joints(character, human().regions);
+  const spherechain::baker::Mesh& body = character.largest_piece.mesh;
+  std::vector<spherechain::baker::Joint> joints = place_joints(human().regions);
   std::vector<spherechain::baker::VertexWeights> weights = bone_heat_weights(body, joints);
 
   std::size_t joint(const std::string& name) const {

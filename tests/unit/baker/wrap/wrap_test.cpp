@@ -43,7 +43,7 @@ Closed close(const SourceMesh& source, const std::string& name = "broken.obj") {
   if (!found) throw Error(ExitCode::kSegmentation, name + ": " + found.reason().what);
   out.regions = std::move(found->regions);
   out.report = found->closing;
-  out.spheres = *fit_spheres(out.character, out.regions, {});
+  out.spheres = *fit_spheres(out.regions, {});
   return out;
 }
 
@@ -61,7 +61,7 @@ double agreement(const BrokenBody& broken, const Closed& closed) {
 }
 
 const Spheres& intact_spheres() {
-  static const Spheres spheres = *fit_spheres(human().character, human().regions, {});
+  static const Spheres spheres = *fit_spheres(human().regions, {});
   return spheres;
 }
 
@@ -112,7 +112,7 @@ Closed check(const std::string& name, const BrokenBody& broken, const Expectatio
   CAPTURE(name);
   const Closed closed = close(broken.source, name);
   CHECK(closed.report.body == expected.body);
-  CHECK(count_open_edges(closed.character.body) == 0);
+  CHECK(count_open_edges(closed.regions.body.mesh) == 0);
   REQUIRE(is_biped(closed.regions));
   CHECK(closed.regions.frame.left.dot(human().regions.frame.left) > 0.999);
   const double equal = agreement(broken, closed);
@@ -194,9 +194,9 @@ TEST_CASE("a rigged body in 60 pieces, none as large as a limb, is fitted by its
     }
   }
 
-  Character character = build_character(broken.source, "rigged.obj");
+  const Character character = build_character(broken.source, "rigged.obj");
   const Roles roles = find_roles(character.rig, character.source_positions);
-  const FittedCharacter fitted = fit_character(std::move(character), roles, {});
+  const FittedCharacter fitted = fit_character(character, roles, {});
   CHECK(fitted.segmentation.choice.strategy == "bones");
   CHECK(fitted.segmentation.choice.passed_over.back().reason.what == "most of the limbs' skin is in small pieces");
   CHECK(fitted.quality.grade() == FitGrade::kGood);
