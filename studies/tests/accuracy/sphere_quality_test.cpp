@@ -12,7 +12,7 @@ using namespace spherechain::baker;
 namespace {
 
 const Mesh& unit_ball() {
-  static const Mesh mesh = build_character(ball_mesh(48), "ball").body;
+  static const Mesh mesh = build_character(ball_mesh(48), "ball").largest_piece.mesh;
   return mesh;
 }
 

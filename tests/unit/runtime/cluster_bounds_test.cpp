@@ -66,29 +66,30 @@ std::vector<Matrix> bounds_pose(int number, std::mt19937& random) {
 struct Bounds {
   std::vector<std::uint64_t> words;
   WordMemory memory;
-  PosedClusters scene;
+  PosedClusters clusters;
   std::vector<float> bones;  // a box each
   Bounds3 body;
 
   Bounds(const OpenedAsset& opened, const PreparedSkin& table, const Pose& pose, Target target, bool has_hulls)
       : words(skin_scratch_words(&opened.asset)),
         memory(words.data()),
-        scene(scene_of(opened.view(), table.surface, pose, nullptr, memory)) {
-    REQUIRE((scene.has_hulls || !has_hulls));
-    scene.has_hulls = has_hulls;  // without them all clusters are bounded, else those of spheres that are near others
+        clusters(posed_clusters_of(opened.view(), table.surface, pose, nullptr, memory)) {
+    REQUIRE((clusters.has_hulls || !has_hulls));
+    clusters.has_hulls =
+        has_hulls;  // without them all clusters are bounded, else those of spheres that are near others
     ContactCollector collector(table.surface, PartTable(), {{}, {}, {}, true});  // spheres only
-    find_candidates(target, {scene, scene, true}, collector);  // leaves what it bounded in the scene's memory
+    find_candidates(target, {clusters, clusters, true}, collector);  // leaves what it bounded in their memory
     bones.resize(6 * opened.view().bone_count());
     body = bound_bones(opened.view(), table.surface, pose, bones.data());
   }
   // Is the vertex in the body's box, and in the one around those of its cluster's bones?
   bool bones_hold(std::size_t cluster, const Position& p) const {
-    const Cluster& of = scene.surface->clusters[cluster];
+    const Cluster& of = clusters.surface->clusters[cluster];
     bool inside = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       float low = HUGE_VALF, high = -HUGE_VALF;
       for (std::size_t k = 0; k < of.bone_count; ++k) {
-        const float* const box = &bones[6 * std::size_t{scene.surface->cluster_bones[of.first_bone + k]}];
+        const float* const box = &bones[6 * std::size_t{clusters.surface->cluster_bones[of.first_bone + k]}];
         low = std::min(low, box[axis]);
         high = std::max(high, box[3 + axis]);
       }
@@ -101,16 +102,16 @@ struct Bounds {
     double squared = 0;
     bool inside = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      inside = inside && p[axis] >= double{scene.clusters.low[axis][cluster]} &&
-               p[axis] <= double{scene.clusters.high[axis][cluster]};
-      squared += std::pow(p[axis] - double{scene.ball_columns[axis][cluster]}, 2);
+      inside = inside && p[axis] >= double{clusters.clusters.low[axis][cluster]} &&
+               p[axis] <= double{clusters.clusters.high[axis][cluster]};
+      squared += std::pow(p[axis] - double{clusters.ball_columns[axis][cluster]}, 2);
     }
-    return inside && std::sqrt(squared) <= double{scene.ball_columns[3][cluster]};
+    return inside && std::sqrt(squared) <= double{clusters.ball_columns[3][cluster]};
   }
   // Is the vertex in the sphere's box, and along each direction within reach of the hull's points and margin?
   bool hull_holds(std::size_t sphere, const Position& p, const std::vector<Position>& directions) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto &low = scene.spheres.low[axis], &high = scene.spheres.high[axis];
+      const auto &low = clusters.spheres.low[axis], &high = clusters.spheres.high[axis];
       if (!(p[axis] >= double{low[sphere]} && p[axis] <= double{high[sphere]})) return false;
     }
     return std::all_of(directions.begin(), directions.end(),
@@ -119,8 +120,8 @@ struct Bounds {
 
  private:
   double reach(std::size_t sphere, const Position& direction) const {
-    const Hull& hull = scene.surface->hulls[sphere];
-    const float* points = scene.hulls + std::size_t{3} * hull.first_point;
+    const Hull& hull = clusters.surface->hulls[sphere];
+    const float* points = clusters.hulls + std::size_t{3} * hull.first_point;
     double most = -HUGE_VAL;
     for (std::size_t i = 0; i < hull.point_count; ++i) {
       double along = 0;
@@ -129,7 +130,7 @@ struct Bounds {
       }
       most = std::max(most, along);
     }
-    return most + std::hypot(direction[0], direction[1], direction[2]) * double{scene.hull_margins[sphere]};
+    return most + std::hypot(direction[0], direction[1], direction[2]) * double{clusters.hull_margins[sphere]};
   }
 };
 
@@ -190,7 +191,7 @@ TEST_CASE("in every pose every vertex is near the hull of its sphere") {
     directions.push_back({any(), any(), any()});
   }
   check_poses(true, [&](const Bounds& bounds, std::size_t c, const Position& p) {
-    REQUIRE(bounds.hull_holds(bounds.scene.surface->clusters[c].sphere, p, directions));
+    REQUIRE(bounds.hull_holds(bounds.clusters.surface->clusters[c].sphere, p, directions));
   });
 }
 
@@ -205,7 +206,7 @@ TEST_CASE("where all bones move alike and rigidly, bounds are as near as roundin
     const Bounds with_hulls(opened, table, pose, target, true);
     for (std::size_t s = 0; s < opened.view().spheres().size; s += 2) {
       // The margin for roundings is up to 2,000 units in the last place of coordinates of about 8.
-      CHECK(with_hulls.scene.hull_margins[s] < 2e-3F);
+      CHECK(with_hulls.clusters.hull_margins[s] < 2e-3F);
     }
     const Bounds bounds(opened, table, pose, target, false);
     const Matrix& m = matrices[0];
@@ -213,11 +214,11 @@ TEST_CASE("where all bones move alike and rigidly, bounds are as near as roundin
       const BoxLanes& rest = table.surface.boxes[c / kClusterLanes];
       const std::size_t lane = c % kClusterLanes;
       // The margin for roundings is up to 1,200 units in the last place of a coordinate of about 4.
-      CHECK(std::abs(bounds.scene.ball_columns[3][c] - rest.radius[lane]) < 4e-4F);
+      CHECK(std::abs(bounds.clusters.ball_columns[3][c] - rest.radius[lane]) < 4e-4F);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const float half = std::abs(m[4 * axis]) * rest.half_x[lane] + std::abs(m[4 * axis + 1]) * rest.half_y[lane] +
                            std::abs(m[4 * axis + 2]) * rest.half_z[lane];
-        const float extent = bounds.scene.clusters.high[axis][c] - bounds.scene.clusters.low[axis][c];
+        const float extent = bounds.clusters.clusters.high[axis][c] - bounds.clusters.clusters.low[axis][c];
         CHECK(std::abs(extent / 2 - std::min(half, rest.radius[lane])) < 4e-4F);
       }
     }

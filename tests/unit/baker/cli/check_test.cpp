@@ -62,7 +62,7 @@ struct PlantedLibrary {
 };
 
 // "from-to@deepest:depth state", one after another.
-std::string events(const json& report, const std::string& clip) {
+std::string events_in(const json& report, const std::string& clip) {
   std::string out;
   for (const json& one : report["clips"]) {
     if (one["clip"] != clip) continue;
@@ -102,12 +102,12 @@ TEST_CASE("check reports planted faults: parts, frames and depth") {
   CHECK(squeezed(run.out).find("hero.glb still frame 0 ball in wall 90 mm\n") != std::string::npos);
   CHECK(squeezed(run.out).find("hero.glb loop frames 8-1 (over the loop) ball") != std::string::npos);
   const json report = library.read("all.json");
-  CHECK(events(report, "clean").empty());
-  CHECK(events(report, "dip") == "2-5@4:200 new");
-  CHECK(events(report, "bridged") == "0-4@4:150 new");
-  CHECK(events(report, "twice") == "0-0@0:100 new, 5-5@5:150 new");
-  CHECK(events(report, "still") == "0-0@0:90 new");
-  CHECK(events(report, "loop") == "8-1@0:150 new");
+  CHECK(events_in(report, "clean").empty());
+  CHECK(events_in(report, "dip") == "2-5@4:200 new");
+  CHECK(events_in(report, "bridged") == "0-4@4:150 new");
+  CHECK(events_in(report, "twice") == "0-0@0:100 new, 5-5@5:150 new");
+  CHECK(events_in(report, "still") == "0-0@0:90 new");
+  CHECK(events_in(report, "loop") == "8-1@0:150 new");
   const json& event = report["clips"][1]["events"][0];
   CHECK(event["class"] == "penetration");
   CHECK(event["rule"].is_null());
@@ -137,12 +137,12 @@ TEST_CASE("check fails by its rules and its baseline alone" * doctest::test_suit
       "rules.json",
       R"({"allow": [{"parts": ["ball", "wall"], "depth_mm": 160}], "severity": {"penetration": "warning"}})");
   CHECK(library.check(json_file + " --config " + library.path("rules.json")).code == 0);
-  CHECK(events(library.read("all.json"), "dip") == "2-5@4:200 new");
+  CHECK(events_in(library.read("all.json"), "dip") == "2-5@4:200 new");
   CHECK(library.read("all.json")["clips"][1]["events"][0]["rule"].is_null());
   CHECK(library.read("all.json")["clips"][2]["events"][0]["rule"] == "ball and wall: 160 mm are allowed");
   library.folder.write("rules.json", R"({"leave_out": ["ball"]})");
   CHECK(library.check(json_file + " --config " + library.path("rules.json")).code == 0);
-  CHECK(events(library.read("all.json"), "dip").empty());
+  CHECK(events_in(library.read("all.json"), "dip").empty());
   library.folder.write("rules.json", R"({"allow": [{"parts": ["*", "bal"], "depth_mm": 500}]})");
   CHECK(library.check(" --config " + library.path("rules.json")).out.find("a rule names 'bal'") != std::string::npos);
   tool::check_error(library.check("--config " + library.folder.write("rules.json", "{\"alow\": []}").string()), 3,
@@ -165,10 +165,10 @@ TEST_CASE("check fails by its rules and its baseline alone" * doctest::test_suit
   CHECK(run.out.find("worse than 150 mm") != std::string::npos);
   const json report = library.read("all.json");
   check_documented(report);
-  CHECK(events(report, "clean") == "2-2@2:60 new");
-  CHECK(events(report, "dip") == "4-6@6:200 accepted");
-  CHECK(events(report, "bridged") == "0-4@4:170 new");
-  CHECK(events(report, "still") == "0-0@0:90 resolved");
+  CHECK(events_in(report, "clean") == "2-2@2:60 new");
+  CHECK(events_in(report, "dip") == "4-6@6:200 accepted");
+  CHECK(events_in(report, "bridged") == "0-4@4:170 new");
+  CHECK(events_in(report, "still") == "0-0@0:90 resolved");
   CHECK(run.out.find("[accepted]") == std::string::npos);
   CHECK(report["summary"]["new"] == 2);
   CHECK(report["summary"]["resolved"] == 1);
@@ -430,7 +430,7 @@ TEST_CASE("one bad file stops nothing") {
   REQUIRE(report["clips"].size() == 8);
   CHECK(report["summary"]["errors"] == 2);
   CHECK(report["clips"][0]["error"].get<std::string>().find("broken.glb: ") != std::string::npos);
-  CHECK(events(report, "dip") == "2-5@4:200 new");
+  CHECK(events_in(report, "dip") == "2-5@4:200 new");
   const std::string other = library.folder.write("other.json", "{}").string();
   tool::check_error(library.check("--json " + other), 3, {"other.json: exists and is not JSON that spherechain wrote"});
   tool::check_error(library.check("--json " + library.file.string()), 2, {"LIBRARY and --json are the same file"});
@@ -509,7 +509,7 @@ TEST_CASE("nothing is computed that is in the cache, whatever killed the run tha
   }
   CHECK(tool::run(command).code == 6);
   const std::string first = tool::contents(library.path("all.json"));
-  CHECK(events(json::parse(first), "dip") == "2-5@4:200 new");
+  CHECK(events_in(json::parse(first), "dip") == "2-5@4:200 new");
   std::map<fs::path, fs::file_time_type> times;
   for (const auto& entry : fs::recursive_directory_iterator(library.path("cache"))) {
     if (entry.is_regular_file()) times[entry.path()] = entry.last_write_time();

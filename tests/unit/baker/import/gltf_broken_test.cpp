@@ -16,7 +16,7 @@ using nlohmann::json;
 
 namespace {
 
-std::string refusal_of(const std::string& bytes) {
+std::string refusal_of_glb(const std::string& bytes) {
   const TemporaryFolder folder;
   return refusal(folder.write("a.glb", bytes));
 }
@@ -37,7 +37,8 @@ Glb character() {
   return glb;
 }
 // Its accessors and nodes, by what they are.
-constexpr int kPositions = 0, kJoints = 1, kWeights = 2, kIndices = 3, kMatrices = 4, kTimes = 5, kRotations = 6;
+constexpr int kPositions = 0, kJointsAccessor = 1, kWeights = 2, kIndices = 3, kMatrices = 4, kTimes = 5,
+              kRotations = 6;
 
 struct Break {
   const char* message;  // what it must contain
@@ -45,11 +46,11 @@ struct Break {
 };
 
 void check_each(const std::vector<Break>& breaks) {
-  REQUIRE(refusal_of(character().bytes()) == "accepted");
+  REQUIRE(refusal_of_glb(character().bytes()) == "accepted");
   for (const Break& change : breaks) {
     Glb glb = character();
     change.apply(glb);
-    const std::string message = refusal_of(glb.bytes());
+    const std::string message = refusal_of_glb(glb.bytes());
     INFO("expected: ", change.message);
     INFO("message:  ", message);
     CHECK(message.find(change.message) != std::string::npos);
@@ -70,7 +71,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 TEST_CASE("a GLB cut short anywhere is refused") {
   const TemporaryFolder folder;
   const std::string bytes = character().bytes();
-  REQUIRE(refusal_of(bytes) == "accepted");
+  REQUIRE(refusal_of_glb(bytes) == "accepted");
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     const std::string message = refusal_here(folder.write("cut.glb", bytes.substr(0, size)));
     REQUIRE_MESSAGE(message != "accepted", size);
@@ -97,19 +98,20 @@ TEST_CASE("the container's broken parts are named") {
     return "glTF" + Glb::word(version) + Glb::word(length) + rest;
   };
   const auto contains = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
-  CHECK(contains(refusal_of(with_header(1, bytes.size())), "GLB version 1"));
-  CHECK(contains(refusal_of(with_header(2, bytes.size() + 1)), "cut short"));
-  CHECK(contains(refusal_of(with_header(2, 0xFFFFFFFF)), "cut short"));
-  CHECK(contains(refusal_of(with_header(2, 12)), "no JSON chunk"));
-  CHECK(contains(refusal_of("glTF" + Glb::word(2) + Glb::word(bytes.size()) + Glb::word(0xFFFFFFFF) + bytes.substr(16)),
-                 "past its end"));
-  CHECK(contains(refusal_of(Glb::container("{", "")), "JSON is broken at byte"));
-  CHECK(contains(refusal_of(Glb::container("[1e999]", "")), "not finite"));
-  CHECK(contains(refusal_of(Glb::container("{}", "")), "asset.version is missing"));
-  CHECK(contains(refusal_of(Glb::container(R"({"asset":{"version":"1.0"}})", "")), "is glTF 1.0"));
-  CHECK(contains(refusal_of(Glb::container(std::string(200000, '['), "")), "nested too deeply"));
-  CHECK(contains(refusal_of(Glb::container("{\"a\":" + std::string(200000, '['), "")), "nested too deeply"));
-  CHECK(contains(refusal_of(Glb::container(R"({"asset":{"version":"2.0"}})", "")), "no triangles"));
+  CHECK(contains(refusal_of_glb(with_header(1, bytes.size())), "GLB version 1"));
+  CHECK(contains(refusal_of_glb(with_header(2, bytes.size() + 1)), "cut short"));
+  CHECK(contains(refusal_of_glb(with_header(2, 0xFFFFFFFF)), "cut short"));
+  CHECK(contains(refusal_of_glb(with_header(2, 12)), "no JSON chunk"));
+  CHECK(contains(
+      refusal_of_glb("glTF" + Glb::word(2) + Glb::word(bytes.size()) + Glb::word(0xFFFFFFFF) + bytes.substr(16)),
+      "past its end"));
+  CHECK(contains(refusal_of_glb(Glb::container("{", "")), "JSON is broken at byte"));
+  CHECK(contains(refusal_of_glb(Glb::container("[1e999]", "")), "not finite"));
+  CHECK(contains(refusal_of_glb(Glb::container("{}", "")), "asset.version is missing"));
+  CHECK(contains(refusal_of_glb(Glb::container(R"({"asset":{"version":"1.0"}})", "")), "is glTF 1.0"));
+  CHECK(contains(refusal_of_glb(Glb::container(std::string(200000, '['), "")), "nested too deeply"));
+  CHECK(contains(refusal_of_glb(Glb::container("{\"a\":" + std::string(200000, '['), "")), "nested too deeply"));
+  CHECK(contains(refusal_of_glb(Glb::container(R"({"asset":{"version":"2.0"}})", "")), "no triangles"));
 }
 
 TEST_CASE("members of the wrong type and indices that lead nowhere are named") {
@@ -207,7 +209,7 @@ TEST_CASE("nodes in circles, with two parents, without a size are refused") {
   Glb deep = character();
   for (int n = 4; n < 100004; ++n) deep.json["nodes"].push_back({{"children", {n + 1}}});
   deep.json["nodes"].push_back({{"name", "last"}});
-  CHECK(refusal_of(deep.bytes()) == "accepted");
+  CHECK(refusal_of_glb(deep.bytes()) == "accepted");
 }
 
 TEST_CASE("buffers, views and accessors that do not fit into one another are refused") {
@@ -286,7 +288,7 @@ TEST_CASE("accessors of the wrong type or length, and figures that are none, are
       {"accessors[0].type", [](Glb& g) { accessor(g, kPositions)["type"] = "VEC4"; }},
       {"Unsupported `type`", [](Glb& g) { accessor(g, kPositions)["type"] = "VEC5"; }},
       {"accessors[0].componentType is 5125", [](Glb& g) { accessor(g, kPositions)["componentType"] = 5125; }},
-      {"accessors[1].componentType is 5126", [](Glb& g) { accessor(g, kJoints)["componentType"] = 5126; }},
+      {"accessors[1].componentType is 5126", [](Glb& g) { accessor(g, kJointsAccessor)["componentType"] = 5126; }},
       {"accessors[2].componentType is 5122", [](Glb& g) { accessor(g, kWeights)["componentType"] = 5122; }},
       {"accessors[3].componentType is 5122", [](Glb& g) { accessor(g, kIndices)["componentType"] = 5122; }},
       {"accessors[5].componentType is 5123", [](Glb& g) { accessor(g, kTimes)["componentType"] = 5123; }},
@@ -299,7 +301,7 @@ TEST_CASE("accessors of the wrong type or length, and figures that are none, are
       {"inverseBindMatrices has 1 matrices for 2 joints", [](Glb& g) { accessor(g, kMatrices)["count"] = 1; }},
       {"primitives[0] uses vertex 15 of 15",
        [](Glb& g) {
-         for (const int a : {kPositions, kJoints, kWeights}) accessor(g, a)["count"] = 15;
+         for (const int a : {kPositions, kJointsAccessor, kWeights}) accessor(g, a)["count"] = 15;
        }},
       {"vertex 2 follows joint 1 of 1",
        [](Glb& g) {

@@ -4,6 +4,6 @@
 #include <vector>
 
 #include "baker/mesh/mesh.h"
-#include "spherechain/asset.h"
-#include "runtime/src/depth/sweep.h"
 #include "runtime/src/base/span.h"
+#include "runtime/src/depth/sweep.h"
+#include "spherechain/asset.h"
