@@ -256,9 +256,10 @@ bool Sweep::find(const Double3& direction, const Contour& contour, double bound,
   return depth < bound;
 }
 
-// Along each line in the direction, the part of b inside a is as long as the sum over pairs of crossings, with the
-// signs of their surfaces, of how far b's is below a's. Where b is clear of a after the move, only pairs that meet on
-// the way are left of that sum.
+// Take a line along the direction that crosses surfaces of a and of b. The length of b inside a on that line is a sum
+// over pairs of crossings, one of each body: the distance of b's below a's, with the product of the surfaces' signs. If
+// b is clear of a after the move, all pairs cancel but those that meet on the way. Integrated over all lines, a pair of
+// triangles adds the volume between their shadows.
 Volume Sweep::volume(const Double3& direction, double depth, bool of_outer_layers) {
   look_along(direction);
   see_boxes(0);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
-// How far must one set of triangles move along a direction to be clear of another? Each pair of triangles blocks an
-// interval of the way; the answer is the first place that none of them blocks.
+// How far must one set of triangles move along a direction to be clear of another? In the view along the direction, a
+// pair of triangles that overlap blocks an interval of the way; the answer is the end of the first run of intervals,
+// the first place that no pair blocks. It is found without a list of intervals: start at 0, and while some pair blocks
+// the place, go to the end of that pair's interval. Each pass looks at pairs of blocks of 16 triangles by their boxes,
+// and pairs that blocked earlier directions are asked first.
 #pragma once
 
 #include "runtime/src/depth/contour.h"
@@ -8,7 +11,7 @@
 
 namespace spherechain {
 
-// Which pairs of triangles count: those that the contact job would report.
+// Selects the pairs of triangles that count: those that the contact job would report.
 struct PairRule {
   const Surface* surface = nullptr;  // null: all pairs, those of two bodies
   Span<const std::uint64_t> ignored;
@@ -17,7 +20,7 @@ struct PairRule {
   bool counts(std::uint32_t a, std::uint32_t b) const;
 };
 
-// Where the way ends: the pair that blocks it last.
+// The end of the way: the pair of triangles that blocks it last.
 struct WayOut {
   double depth = 0;
   std::uint32_t a = kNoPlace, b = kNoPlace;
@@ -33,10 +36,10 @@ struct Volume {
 
 class Sweep {
  public:
-  // `gap`: free places shorter than that are none.
+  // `gap`: free places shorter than that do not end the way.
   Sweep(const Skins& skins, const PairRule& rule, double gap) : skins_(skins), rule_(rule), gap_(gap) {}
   void take(WordMemory& memory, const SkinSizes& a, const SkinSizes& b);
-  // Once, before anything else.
+  // Call it once, before anything else.
   void clear();
 
   // Sets the triangles of both sides. `origin` is a point near the contact. Call keep_near() or keep_on_way() next.
@@ -58,7 +61,8 @@ class Sweep {
   Volume volume(const Double3& direction, double depth, bool of_outer_layers);
 
  private:
-  // Blocks of triangles that follow one another, and their boxes in view: along u, v, d. Boxes past the last are empty.
+  // The triangles of one side, in blocks of kBlock that follow one another, and their boxes in view: along u, v (across
+  // the direction) and d (along it). Boxes past the last are empty.
   static constexpr std::size_t kBlock = 16;
   struct Boxes {
     std::uint32_t *triangle = nullptr, *corners = nullptr;  // three places in vertices_ each
@@ -74,9 +78,9 @@ class Sweep {
     void take(WordMemory& memory, std::size_t capacity);
     void view_blocks(const View& view);
     void keep_blocks(const float (&least)[3], const float (&most)[3]);
-    // Sets the boxes past the last. No block's triangles have boxes yet.
+    // Empties the boxes past the last, and forgets those of all triangles.
     void close();
-    // Makes boxes of the triangles of `block[i]`, and of the block. Returns false if they were there.
+    // Makes the boxes of the triangles of `block[i]`, and a closer box of the block. Returns false if they were there.
     bool make_boxes(std::size_t i, const float* const (&seen)[3]);
   };
   // The vertices of both sides' triangles, and their coordinates in view.
@@ -86,7 +90,7 @@ class Sweep {
     Double3 origin{};
     std::size_t count = 0;
   };
-  // A body's triangles. Its vertices' numbers start at that one: bodies that are two share none.
+  // The triangles of one body. Numbers of its vertices start at `first_vertex`, so that two bodies share none.
   struct Side {
     const PosedSkin& skin;
     std::uint32_t first_vertex;
@@ -97,7 +101,7 @@ class Sweep {
 
   void list_vertices(const Side& side, Boxes& boxes);
   void look_along(const Double3& direction);
-  // Boxes of all blocks that can block a way longer than `depth`.
+  // Sees the boxes of all blocks that can block a way longer than `depth`.
   void see_boxes(double depth);
   // The farthest that b may move up and down along each axis.
   struct Reach {
@@ -127,7 +131,7 @@ class Sweep {
   Span<const TriangleRun> side_a_, side_b_;
   Boxes a_, b_;
   Vertices vertices_;
-  // Pairs that blocked other ways last: likely to block the next.
+  // Pairs that ended the ways along earlier directions: they are likely to block the next one.
   static constexpr std::size_t kRemembered = 64;
   Pair remembered_[kRemembered] = {};
   std::size_t remembered_count_ = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The boxes of a sweep: which triangles it keeps, and which of those can meet in a view.
+// The boxes of a sweep. keep() selects the triangles that can meet at all, by the boxes of their clusters. In each
+// view, see_boxes() selects their blocks of 16 that can, and make_boxes() makes boxes of single triangles on demand.
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
@@ -9,7 +10,7 @@
 namespace spherechain {
 namespace {
 
-constexpr float kRounding = 1e-5F;  // of sums of coordinates, to their size: many times more than there is
+constexpr float kRounding = 1e-5F;  // relative; many times the rounding error of a sum of three products
 
 }  // namespace
 
@@ -29,7 +30,7 @@ void Sweep::Boxes::take(WordMemory& memory, std::size_t capacity) {
   memory.take(corners, 3 * capacity);
 }
 
-// Intervals that are no shorter than those of the triangles' boxes, of all blocks.
+// Sets the interval of each block along u, v and d. It encloses those of the block's triangles.
 void Sweep::Boxes::view_blocks(const View& view) {
   block_count = (count + kBlock - 1) / kBlock;
   const Double3* const axes[3] = {&view.u, &view.v, &view.d};
@@ -110,7 +111,7 @@ void Sweep::keep(const Reach& reach) {
   list_vertices(side_b(), b_);
 }
 
-// By the box of the run's cluster, of the blocks that the run comes to lie in.
+// Widens the boxes of the blocks that a run comes to lie in by the box of the run's cluster.
 void Sweep::widen_blocks(const PosedSkin& skin, const TriangleRun& run, Boxes& out) const {
   const double origin[3] = {vertices_.origin.x, vertices_.origin.y, vertices_.origin.z};
   for (std::size_t i = out.count / kBlock; kBlock * i < out.count + run.count; ++i) {
@@ -127,11 +128,11 @@ void Sweep::widen_blocks(const PosedSkin& skin, const TriangleRun& run, Boxes& o
   }
 }
 
-// Runs of whose cluster the box meets one of the other side's that goes so far up and down along each axis.
+// Keeps the runs whose cluster's box meets a box of the other side that is `reach` wider up and down along each axis.
 void Sweep::keep_runs(const Side& side, const Side& other, const Reach& reach, Boxes& out) {
   const double up[3] = {reach.up.x + gap_, reach.up.y + gap_, reach.up.z + gap_};
   const double down[3] = {reach.down.x + gap_, reach.down.y + gap_, reach.down.z + gap_};
-  double highest[3], lowest[3];  // of them all
+  double highest[3], lowest[3];  // of all runs of the other side
   for (std::size_t axis = 0; axis < 3; ++axis) {
     highest[axis] = -HUGE_VAL;
     lowest[axis] = HUGE_VAL;
@@ -164,7 +165,7 @@ void Sweep::keep_runs(const Side& side, const Side& other, const Reach& reach, B
   }
 }
 
-// Near each other in memory: boxes are made of them again and again.
+// Numbers the vertices that the kept triangles use, so that they lie near each other: every view reads them.
 void Sweep::list_vertices(const Side& side, Boxes& boxes) {
   for (std::size_t i = 0; i < boxes.count; ++i) {
     const std::uint32_t* const corners = side.skin.surface->triangle_vertices.data + 3 * std::size_t{boxes.triangle[i]};
@@ -189,8 +190,8 @@ void Sweep::list_vertices(const Side& side, Boxes& boxes) {
 void Sweep::see_boxes(double depth) {
   a_.view_blocks(view_);
   b_.view_blocks(view_);
-  // A side's blocks stay where they reach into the box around the other's; that one is smaller the second time. To meet
-  // a, b rises: so far at least.
+  // Each side keeps the blocks that reach into the box around the other side; that box is smaller the second time. A
+  // pair blocks a way longer than `depth` only if b must rise by more than that to pass a.
   const float rise = static_cast<float>(depth) * (1 - kRounding);
   for (int turn = 0; turn < 2; ++turn) {
     for (Boxes* const side : {&a_, &b_}) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Bones' matrices as refit by moments reads them.
+// Step 1 of refit by moments: loads the matrices of bones, whatever their layout, and moves them to the origin and the
+// reference bone.
 #include "runtime/src/simd/highway.h"
 
 #if defined(SPHERECHAIN_REFIT_MOMENTS_BONES_H) == defined(HWY_TARGET_TOGGLE)  // once a target
@@ -21,10 +22,9 @@ using Lanes4 = hn::CappedTag<float, 4>;
 using Vector = hn::Vec<Lanes16>;
 constexpr std::size_t kLanes = hn::MaxLanes(Lanes16());
 constexpr std::size_t kParts = kMomentSize / kLanes;
-constexpr std::size_t kKeptBones = 256;  // an asset of more has its matrices moved wherever they are read
+constexpr std::size_t kKeptBones = 256;  // an asset with more bones moves a matrix each time that it is read
 
-// A bone's matrix by rows of four, seen from the origin and the reference bone; and a fourth row, which no sum that is
-// used reads.
+// C_b: three rows of four numbers, and a fourth row, whose values reach no sum that is used.
 struct Moved {
   HWY_ALIGN float rows[kMomentSize];
 };
@@ -52,7 +52,7 @@ HWY_INLINE Vector spread(const float* row, std::size_t part) {
 
 #if HWY_TARGET == HWY_SCALAR
 
-// Columns lie kColumn floats apart; by rows of four where that is 1.
+// Loads a matrix into rows of four. kColumn is 4 or 3 for columns that lie so many floats apart, 1 for rows of four.
 template <std::size_t kColumn>
 HWY_INLINE void load_rows(const float* matrix, Vector (&rows)[kParts]) {
   for (std::size_t i = 0; i < kMomentSize; ++i) {
@@ -61,7 +61,7 @@ HWY_INLINE void load_rows(const float* matrix, Vector (&rows)[kParts]) {
   }
 }
 
-// The fourth column, which the origin is taken to, in place of the translation.
+// Replaces the translation, the fourth column, by the place that the matrix takes the origin to.
 HWY_INLINE void move_origin(const Vec3& origin, Vector (&rows)[kParts]) {
   const Lanes16 d;
   for (std::size_t i = 0; i < 12; i += 4) {
@@ -151,13 +151,13 @@ HWY_INLINE void subtract_column(const Vector (&reference)[kParts], Vector (&rows
 
 #endif
 
-// NaN stays.
+// Replaces numbers nearer to 0 than kMinMatrixFigure by 0. A NaN stays: it compares false.
 HWY_INLINE Vector without_least(Vector v) {
   const Lanes16 d;
   return hn::IfThenZeroElse(hn::Lt(hn::Abs(v), hn::Set(d, kMinMatrixFigure)), v);
 }
 
-// kKeeps: all of them, in memory; else each is moved when it is asked for.
+// All bones. With kKeeps their C_b are computed once and kept; else each is computed when it is asked for.
 template <bool kKeeps>
 class Bones {
  public:
@@ -174,7 +174,7 @@ class Bones {
     }
   }
 
-  // Good until `spare` is used again.
+  // C_b of a bone. It stays valid until `spare` is used again.
   HWY_INLINE const float* of(std::size_t bone, Moved& spare) const {
     if (kKeeps) {
       return kept_[bone].rows;
@@ -185,7 +185,7 @@ class Bones {
     return spare.rows;
   }
 
-  // Its fourth column is where the reference bone takes the origin.
+  // The reference bone's matrix. Its fourth column is where that bone takes the origin.
   const Vector (&reference() const)[kParts] { return reference_; }
 
  private:
@@ -211,7 +211,7 @@ class Bones {
 
   template <std::size_t kColumn>
   HWY_INLINE void keep() {
-    // Here and not in memory, where what is stored might be these.
+    // Local copies: the stores below might alias the inputs, which would then be loaded anew.
     const Vec3 origin = in_.moments->origin;
     const std::size_t stride = in_.stride;
     const float* matrix = in_.matrices;

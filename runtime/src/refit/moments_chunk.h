@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Four spheres of their sums.
+// Step 3 of refit by moments, its end: adds the lanes of four spheres at a time, and makes centres and radii.
 #include "runtime/src/simd/highway.h"
 
 #if defined(SPHERECHAIN_REFIT_MOMENTS_CHUNK_H) == defined(HWY_TARGET_TOGGLE)  // once a target
@@ -19,20 +19,22 @@ namespace moments {
 constexpr std::size_t kChunk = 4;  // spheres finished together
 constexpr std::size_t kSums = 32;  // spheres whose sums are kept: finished at once, none waits for its own sums
 
-// Sums for each of kSums spheres: the centre's three rows of four columns, and the sixteen of its squared spread.
+// Lane sums of kSums spheres: of the centre three rows of four columns, of the squared spread 16 lanes; and `wanted`,
+// the radius at rest over the spread at rest.
 struct Sums {
   HWY_ALIGN float centers[kSums][kMomentSize];
   HWY_ALIGN float squares[kSums][kMomentSize];
   HWY_ALIGN float wanted[kSums];
 };
 
-// A square that is not finite makes the spread NaN.
+// The square root; 0 for squares that rounding made negative. Adding square * 0 makes the spread NaN where the square
+// is not finite.
 HWY_INLINE hn::Vec<Lanes4> spread_of(hn::Vec<Lanes4> square) {
   const auto zero = hn::Zero(Lanes4());
   return hn::MulAdd(square, zero, hn::Sqrt(hn::IfThenZeroElse(hn::Le(square, zero), square)));
 }
 
-// The first two steps of the tree.
+// The first two steps of the tree that adds 16 lanes in a fixed order: 16 to 8, then 8 to 4.
 HWY_INLINE void fold(const float* sums, float* out) {
   const Lanes4 d;
   for (std::size_t i = 0; i < 4; i += hn::MaxLanes(d)) {
@@ -58,7 +60,7 @@ HWY_INLINE void sum_four(const float* v, std::size_t step, float* out) {
 #endif
 }
 
-// Spheres `first` and on of the sums, `count` of them, to where `numbers` says.
+// Finishes `count` spheres of the sums from `first` on, kChunk at most: writes them to spheres[numbers[i]].
 HWY_INLINE void finish(const Sums& sums, std::size_t first, std::size_t count, const std::uint32_t* numbers,
                        const Vector (&references)[kParts], Sphere* spheres) {
   const Lanes4 d;

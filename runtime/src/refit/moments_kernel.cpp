@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The inner loop of refit from bones by moments. A lane is an element of a 4 by 4 matrix, so targets of any width work
-// alike. What passes from one step to the next goes over the stack, whose lines are in the first cache: the bones'
-// matrices, a batch's Gram matrices, the sums of some spheres.
+// The inner loop of refit from bones by moments (docs/arithmetic.md, "Refit from bones"). It has three steps:
+//   1. Bones: C_b, the matrix of each bone, three rows of four, seen from the origin and the reference bone.
+//   2. Grams: G_ab = transposed(C_a) C_b, four by four, for each pair of bones that some sphere of a batch needs.
+//   3. Sums: a sphere's centre is the sum of C_b c_b over its bones. The mean squared distance of its pivots from the
+//      centre is quadratic in the matrices: the sum of <M_ab, G_ab>, element by element, over its pairs of bones.
+// A lane is an element of a 4 by 4 matrix, so vectors of any width add the same numbers in the same order. Steps hand
+// over their results on the stack, which stays in the first cache: a batch has at most kMaxMomentPairs Gram matrices.
 #include <cstring>
 
 #include "runtime/src/base/arithmetic.h"
@@ -20,7 +24,9 @@ namespace spherechain {
 namespace HWY_NAMESPACE {
 namespace moments {
 
-// A batch's Gram matrices. Pairs of one bone follow each other: what of it falls on which lane is found once for them.
+// Computes the Gram matrices of a batch. Lane 4 i + j is element (i, j): the dot product of column i of C_a and column
+// j of C_b over the three rows. So each row of C_a is spread (each number over four lanes) and each row of C_b repeated
+// (all four numbers in every group of four lanes). Pairs are sorted by `a`: a bone is spread once for all its pairs.
 template <bool kKeeps>
 HWY_INLINE void find_grams(const BonePair* pair, const BonePair* end, const Bones<kKeeps>& bones, Moment* gram) {
   const Lanes16 d;
@@ -48,7 +54,7 @@ HWY_INLINE void find_grams(const BonePair* pair, const BonePair* end, const Bone
   }
 }
 
-// Where in the tables a sphere's figures start.
+// Positions in the tables: where the next sphere's entries start.
 struct Place {
   const std::uint16_t* bones;
   const CenterTerm* centers;
@@ -56,7 +62,9 @@ struct Place {
   const Moment* moments;
 };
 
-// A sphere's sums. Where the number of its bones is known, kBones, nothing is left to branch on.
+// Sums up one sphere lane by lane: 16 partial sums of the squared spread, 3 rows of 4 of the centre. finish() adds the
+// lanes. The first term is a product and each further one a fused multiply-add, as docs/arithmetic.md fixes it. With
+// kBones > 0 the number of bones is known at compile time and the loops unroll; with 0 it is `known_bones`.
 template <std::size_t kBones, bool kKeeps>
 HWY_INLINE void add_sphere(std::size_t known_bones, const Bones<kKeeps>& bones, const Moment* grams, Place& at,
                            float* center_sums, float* squares) {
@@ -98,7 +106,8 @@ HWY_INLINE void add_sphere(std::size_t known_bones, const Bones<kKeeps>& bones, 
   at.moments += pair_count;
 }
 
-// Where the spheres' sums go, and what becomes of them.
+// Sums up spheres until kSums are kept, then finishes them together: the additions across lanes of one sphere wait for
+// each other, those of several spheres do not.
 template <bool kKeeps>
 class Refit {
  public:
@@ -109,7 +118,8 @@ class Refit {
         radii_(in.radius == SC_RADIUS_FIT ? &in.rest->radius : &in.rest->detect_radius),
         spheres_(spheres) {}
 
-  // The spheres of a batch, whose Gram matrices these are; `bone_counts` is theirs.
+  // Adds the spheres of a batch. `grams` are the batch's Gram matrices, [bone_counts, end) its spheres' numbers of
+  // bones.
   HWY_INLINE void add(const Moment* grams, const std::uint8_t* bone_counts, const std::uint8_t* end) {
     while (bone_counts < end) {
       bone_counts = add_any_run(grams, bone_counts, end);
@@ -122,7 +132,7 @@ class Refit {
       finish(sums_, i, kChunk, numbers_ + i, bones_.reference(), spheres_);
     }
     if (whole < count_) {
-      for (std::size_t i = count_; i < kSums && i % kChunk != 0; ++i) {  // what the last chunk lacks is 0
+      for (std::size_t i = count_; i < kSums && i % kChunk != 0; ++i) {  // pads the last chunk with zeros
         std::memset(sums_.centers[i], 0, sizeof sums_.centers[i]);
         std::memset(sums_.squares[i], 0, sizeof sums_.squares[i]);
         sums_.wanted[i] = 0;
@@ -134,13 +144,13 @@ class Refit {
   }
 
  private:
-  // From *bone_counts on those of as many bones. Returns the first that is of another number.
+  // Adds the run of spheres that have as many bones as the first. Returns where the run ends.
   template <std::size_t kBones>
   HWY_INLINE const std::uint8_t* add_run(const Moment* grams, const std::uint8_t* bone_counts,
                                          const std::uint8_t* end) {
     constexpr std::size_t kRestFloats = sizeof(RestSphere) / sizeof(float);
     const std::size_t bone_count = *bone_counts;
-    Place at = at_;  // here and not in memory, where bytes are read that might be these
+    Place at = at_;  // a local copy: the bytes that are read might alias the member, which would then be loaded anew
     std::size_t count = count_;
     do {
       if (count == kSums) {

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
-// As contacts_kernel.cpp, for skins on their way from one pose to the next. Vertices go straight, all but `strays`. So
-// for any fixed direction n the gap between two sets of vertices, min n.b - max n.a, is a concave function of time:
-// where it is positive at the start and at the end, it is so all the time. Spheres' and clusters' boxes, hulls, spans
-// and triangles are parted by that; what is left goes to the collector.
+// Finds triangles that may touch on the way from one pose to the next: what contacts_kernel.cpp does for one pose.
+//
+// Vertices go straight, but for `strays`. So for a fixed direction n, the gap between two sets of vertices,
+// min n.b - max n.a, is a concave function of time: a minimum of linear functions, less a maximum of such. Where it is
+// positive at the start and at the end of the step, it is positive all the time. Every test below uses this: it looks
+// at the two poses alone, and widens what it compares by the strays of both sides. The tests go from cheap to dear:
+//   spheres    boxes around the whole way, boxes that pass by each other, hulls along the line between their middles
+//   clusters   the same boxes, spans along nine fixed directions, a plane across the line between their middles
+//   triangles  boxes around the way, edges and normals (moving_blocks.h); the rest goes to the collector
 #include <cstring>
 
 #include "runtime/src/base/arithmetic.h"
@@ -24,7 +29,7 @@ namespace HWY_NAMESPACE {
 
 constexpr float kRootOfTwo = 1.4142137F;
 
-// Boxes [i, end) around both, `stray` wider: a register of them.
+// Writes a register of boxes, those of [i, end): each encloses the boxes at the start and at the end, `stray` wider.
 HWY_INLINE void sweep_boxes(const BoxColumns& from, const BoxColumns& to, Vector stray, std::size_t i, std::size_t end,
                             const BoxColumns& out) {
   constexpr Floats kFloats;
@@ -48,9 +53,10 @@ HWY_INLINE Vector rounding_of(const BoxColumns& boxes, std::size_t i) {
   return hn::IfThenElseZero(hn::Lt(most, hn::Set(kFloats, 0x1p60F)), hn::Mul(most, hn::Set(kFloats, 0x1p-20F)));
 }
 
-HWY_NOINLINE void bound_ways(const MovingSkin& posed) {
+// Bounds all spheres at the start and at the end, and boxes around their whole way. Adds roundings to the strays.
+HWY_NOINLINE void bound_ways(const MovingSkin& moving) {
   constexpr Floats kFloats;
-  for (const PosedClusters* pose : {&posed.start, &posed.end}) {
+  for (const PosedClusters* pose : {&moving.start, &moving.end}) {
     if (!pose->has_sphere_boxes) {
       if (!pose->has_hulls) {
         bound_clusters(*pose, 0, pose->sphere_count);
@@ -58,32 +64,33 @@ HWY_NOINLINE void bound_ways(const MovingSkin& posed) {
       bound_spheres(*pose);
     }
   }
-  const std::size_t end = posed.start.sphere_count;
+  const std::size_t end = moving.start.sphere_count;
   for (std::size_t s = 0; s < end; s += kLanes) {
-    const Vector rounding = hn::Max(rounding_of(posed.start.spheres, s), rounding_of(posed.end.spheres, s));
-    const Vector stray = hn::Add(hn::LoadU(kFloats, posed.strays + s), rounding);
-    hn::BlendedStore(stray, hn::FirstN(kFloats, end - s), kFloats, posed.strays + s);
-    sweep_boxes(posed.start.spheres, posed.end.spheres, stray, s, end, posed.spheres);
+    const Vector rounding = hn::Max(rounding_of(moving.start.spheres, s), rounding_of(moving.end.spheres, s));
+    const Vector stray = hn::Add(hn::LoadU(kFloats, moving.strays + s), rounding);
+    hn::BlendedStore(stray, hn::FirstN(kFloats, end - s), kFloats, moving.strays + s);
+    sweep_boxes(moving.start.spheres, moving.end.spheres, stray, s, end, moving.spheres);
   }
 }
 
-// Boxes of the sphere's clusters around all of the way.
-HWY_INLINE void sweep_once(const MovingSkin& posed, std::size_t sphere) {
-  if (posed.is_swept[sphere] != 0) {
+// Makes the boxes of a sphere's clusters around the whole way, if they are not there yet.
+HWY_INLINE void sweep_once(const MovingSkin& moving, std::size_t sphere) {
+  if (moving.is_swept[sphere] != 0) {
     return;
   }
-  posed.is_swept[sphere] = 1;
-  bound_once(posed.start, sphere);
-  bound_once(posed.end, sphere);
-  const Vector stray = hn::Set(Floats(), posed.strays[sphere]);
-  const std::size_t end = posed.start.first_cluster[sphere + 1];
-  for (std::size_t i = posed.start.first_cluster[sphere]; i < end; i += kLanes) {
-    sweep_boxes(posed.start.clusters, posed.end.clusters, stray, i, end, posed.clusters);
+  moving.is_swept[sphere] = 1;
+  bound_once(moving.start, sphere);
+  bound_once(moving.end, sphere);
+  const Vector stray = hn::Set(Floats(), moving.strays[sphere]);
+  const std::size_t end = moving.start.first_cluster[sphere + 1];
+  for (std::size_t i = moving.start.first_cluster[sphere]; i < end; i += kLanes) {
+    sweep_boxes(moving.start.clusters, moving.end.clusters, stray, i, end, moving.clusters);
   }
 }
 
-// Do two boxes that go straight from one place to another miss each other all the time? Each side is passed once, so
-// they touch from one time to another, if at all. `stray` is large beside the roundings.
+// True if two boxes that go straight from one place to another never touch. Along each axis they overlap during one
+// interval of time, for their sides move linearly; the boxes touch while all three do: from `first` to `last`. `stray`
+// is large beside the roundings.
 HWY_INLINE bool pass_by(const Box& start_a, const Box& end_a, const Box& start_b, const Box& end_b, float stray) {
   float first = 0, last = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -144,14 +151,14 @@ HWY_INLINE float gap_along(const float (&direction)[3], const float* const (&a)[
 
 // True if one plane of constant direction separates two spheres' hulls at the start and at the end of the step. See
 // hulls_apart().
-HWY_INLINE bool hulls_stay_apart(const MovingSkin& posed_a, std::size_t a, const MovingSkin& posed_b, std::size_t b,
+HWY_INLINE bool hulls_stay_apart(const MovingSkin& moving_a, std::size_t a, const MovingSkin& moving_b, std::size_t b,
                                  float stray) {
   float direction[3];
-  middle_direction(box_at(posed_a.start.spheres, a), box_at(posed_a.end.spheres, a), box_at(posed_b.start.spheres, b),
-                   box_at(posed_b.end.spheres, b), direction);
+  middle_direction(box_at(moving_a.start.spheres, a), box_at(moving_a.end.spheres, a),
+                   box_at(moving_b.start.spheres, b), box_at(moving_b.end.spheres, b), direction);
   const float length = length_of(direction);
-  const Hull& hull_a = posed_a.start.surface->hulls.data[a];
-  const Hull& hull_b = posed_b.start.surface->hulls.data[b];
+  const Hull& hull_a = moving_a.start.surface->hulls.data[a];
+  const Hull& hull_b = moving_b.start.surface->hulls.data[b];
   const auto is_gap = [&](const PosedClusters& pose_a, const PosedClusters& pose_b) HWY_ATTR {
     const float* const p = pose_a.hulls + 3 * std::size_t{hull_a.first_point};
     const float* const q = pose_b.hulls + 3 * std::size_t{hull_b.first_point};
@@ -160,7 +167,7 @@ HWY_INLINE bool hulls_stay_apart(const MovingSkin& posed_a, std::size_t a, const
     const float margin = pose_a.hull_margins[a] + pose_b.hull_margins[b] + stray;
     return gap > length * margin * (1 + 0x1p-20F) + kMinLength;
   };
-  return is_gap(posed_a.start, posed_b.start) && is_gap(posed_a.end, posed_b.end);
+  return is_gap(moving_a.start, moving_b.start) && is_gap(moving_a.end, moving_b.end);
 }
 
 // Bit k is set if a's sphere first + k is to be paired with b's sphere b. Within one body only spheres before b are.
@@ -176,6 +183,7 @@ HWY_INLINE std::uint64_t paired(const MovingBodies& bodies, std::size_t first, s
 
 using SpherePairs = PairList<512>;
 
+// Appends those of the found pairs whose spheres may meet to `pairs`, and empties the list.
 HWY_NOINLINE void put_spheres(const MovingBodies& bodies, SpherePairs& found, Span<Pair>& pairs) {
   const MovingSkin &moving_a = bodies.a, &moving_b = bodies.b;
   const bool have_hulls =
@@ -194,6 +202,7 @@ HWY_NOINLINE void put_spheres(const MovingBodies& bodies, SpherePairs& found, Sp
   found.count = 0;
 }
 
+// Compares each sphere of b with a register of spheres of a, by their boxes around the whole way.
 void find_spheres(const MovingBodies& bodies, Span<Pair>& pairs) {
   bound_ways(bodies.a);
   if (!bodies.are_one) {
@@ -272,6 +281,7 @@ HWY_INLINE void find_places(const MovingBlock& block, const MovingBlock& other, 
   out.finish();
 }
 
+// Hands all pairs of triangles of two blocks to the collector that no separating direction keeps apart.
 HWY_NOINLINE void pair_blocks(const MovingBodies& bodies, const MovingBlock& block, const MovingBlock& other,
                               float stray, StepCollector& collector) {
   PlacePairs places;
@@ -301,7 +311,7 @@ HWY_NOINLINE void pair_blocks(const MovingBodies& bodies, const MovingBlock& blo
 }
 
 // Returns false if a cluster has no shape at the start or at the end.
-HWY_INLINE bool load_both(const MovingSkin& posed, std::size_t cluster) {
+HWY_INLINE bool load_both(const MovingSkin& moving, std::size_t cluster) {
   const auto has_shape = [&](const PosedClusters& pose) HWY_ATTR {
     if (pose.is_loaded[cluster] == 0) {
       load(pose, cluster);
@@ -309,7 +319,7 @@ HWY_INLINE bool load_both(const MovingSkin& posed, std::size_t cluster) {
     const Box box = box_of_span(pose, cluster);
     return box.low[0] <= box.high[0];
   };
-  return has_shape(posed.start) && has_shape(posed.end);
+  return has_shape(moving.start) && has_shape(moving.end);
 }
 
 // Returns false only if no triangles of two clusters can touch during the step.
@@ -320,6 +330,7 @@ HWY_NOINLINE bool may_touch(const MovingBodies& bodies, std::size_t a, std::size
          !plane_stays_between(bodies, a, b, stray);
 }
 
+// Lists the pairs of clusters of two spheres that may touch. False: the list is full.
 bool find_clusters(const MovingBodies& bodies, Span<const Pair> spheres, MovingClusters& found) {
   for (std::size_t k = 0; k < spheres.size; ++k) {
     const std::size_t a = spheres.data[k].a, b = spheres.data[k].b;
@@ -347,6 +358,8 @@ bool find_clusters(const MovingBodies& bodies, Span<const Pair> spheres, MovingC
   return true;
 }
 
+// Loads the triangles of two clusters that reach into each other's way, and pairs them. Both are seen from a frame that
+// drifts with them (Drift), so that a shared motion widens no box.
 void find_triangles(const MovingBodies& bodies, Span<const Pair> clusters, StepCollector& collector) {
   for (std::size_t k = 0; k < clusters.size; ++k) {
     const std::size_t a = clusters.data[k].a, b = clusters.data[k].b;
