@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Spheres and their pairs (docs/performance.md): one command, one table. First all contestants must find the same pairs,
-// then they are timed.
+// Spheres and their pairs (docs/performance.md): one command, one table. First all contestants must find the same
+// pairs, then they are timed.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
