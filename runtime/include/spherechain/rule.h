@@ -4,8 +4,8 @@
 
 #include "spherechain/types.h"
 
-/* What a person would call the intersection of two parts. The first class that applies is taken. SC_CLASS_DEEP_FOLD and
- * SC_CLASS_PENETRATION are faults. */
+/* The class of an intersection, as a person would name it. The first class that applies is taken. SC_CLASS_DEEP_FOLD
+ * and SC_CLASS_PENETRATION are faults. */
 SC_ENUM(sc_penetration_class){
     SC_CLASS_REST = 0,        /* the two spots touch in the rest pose, too */
     SC_CLASS_SHELL = 1,       /* another layer of the same place (a garment on the body), or most of it is hidden */
