@@ -1,14 +1,16 @@
 #!/usr/bin/env node
-// Bakes, validates and prints docs/accuracy.md:
-//   scripts/accuracy.mjs build/release/bin/spherechain [CHARACTER]... [--depth CHARACTER[+MOTION]...] > docs/accuracy.md
+// Bakes and validates characters. Writes docs/accuracy-sweeps.md, and the marked sections of docs/accuracy.md:
+//   scripts/accuracy.mjs build/release/bin/spherechain [CHARACTER]... [--depth CHARACTER[+MOTION]...]
 // Characters: the MakeHuman body of assimp-testmodels with three recordings and samples/poses; then each CHARACTER with
-// its own clips. Those after --depth are evaluated by depth_study. Expected beside the tool, and built by name:
-//   cmake --build --preset release --target depth_study volume_study
+// its own clips. Those after --depth are evaluated by depth_study; without them its table stays. Expected beside the
+// tool, and built by name:
+//   cmake --build --preset release --target accuracy_study depth_study volume_study
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { cpus, tmpdir } from "node:os";
 import { basename, dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { answerSection, replaceSection, sweepsPage } from "./accuracy_pages.mjs";
 
 const [tool, ...given] = process.argv.slice(2);
 if (!tool) {
@@ -19,7 +21,7 @@ const end = given.includes("--depth") ? given.indexOf("--depth") : given.length;
 const characters = given.slice(0, end), posed = given.slice(end + 1);
 const kFrames = 60, kJudged = 30, kDirections = 40;
 const models = "/usr/share/assimp/models", human = `${models}/Collada/human.zae`;
-const poses = join(dirname(fileURLToPath(import.meta.url)), "../samples/poses");
+const root = join(dirname(fileURLToPath(import.meta.url)), ".."), poses = join(root, "samples/poses");
 const folder = mkdtempSync(join(tmpdir(), "accuracy-"));
 process.on("exit", () => rmSync(folder, { recursive: true }));
 
@@ -124,10 +126,13 @@ function methods(row) {
   });
 }
 
-function far(row) {
-  const spheres = row.detect[0].all_pairs;
-  const shown = (x) => (x === null ? "" : percent(x));
-  return [row.name, shown(spheres.far_recall), shown(spheres.apart_precision), spheres.reported_per_frame.toFixed(1)];
+// Far recall and apart precision are of one motion: several are not added up.
+function alarm(row) {
+  const spheres = row.detect.length === 1 ? row.detect[0].all_pairs : {};
+  const shown = (x) => (x === null || x === undefined ? "" : percent(x));
+  const s = of(row.detect, (f) => f.all_pairs);
+  return [row.name, s.truth, percent(recall(s)), shown(spheres.far_recall), percent(precision(s)), shown(spheres.apart_precision),
+    (s.reported / s.frames).toFixed(1)];
 }
 
 function scope(row) {
@@ -141,7 +146,6 @@ function scope(row) {
 // Volumes of the characters and two recordings, all together.
 const volumes = () => runs(join(dirname(tool), "volume_study"), String(kFrames), ...[`${human}+${models}/BVH/Boxing_Toes.bvh`, `${human}+${models}/BVH/01_01.bvh`, ...characters]
   .flatMap((source) => [asset(source.split("+")[0], "balanced"), source]));
-const depth = () => runs(join(dirname(tool), "depth_study"), "--judged", String(kJudged), ...posed);
 
 function curve(kind, label) {
   const points = rows[0].detect[0][kind].map((point, i) => {
@@ -168,112 +172,30 @@ const contacts = rows.flatMap((row) => row.detect).reduce((t, f) =>
   ({ frames: t.frames + f.frames, missing: t.missing + f.contacts_missing, extra: t.extra + f.contacts_extra }), { frames: 0, missing: 0, extra: 0 });
 const missedByChains = all.found - chains.found;
 
-console.log(`# Accuracy
+const commit = runs("git", "-C", root, "rev-parse", "--short", "HEAD").trim();
+writeFileSync(join(root, "docs/accuracy-sweeps.md"), sweepsPage({ commit, frames: kFrames, counts, tables: {
+  methods: table(["motion", "method", "true pairs", "recall", "precision", "pairs a frame", "any", "all", "missed, mm"], rows.flatMap(methods)),
+  scope: table(["motion", "frames", "intersecting pairs", "at rest too", "one sphere", "neighbours", "true", "left out %"], rows.map(scope)),
+  volumes: volumes().trim(),
+  radius: curve("radius_curve", (p) => `x ${p.scale.toFixed(1)}`),
+  rest: curve("rest_curve", (p) => p.rest_scale.toFixed(1)),
+  capsules: capsuleCurve(),
+} }));
 
-How many of the true contacts each method finds, and how many of its reports are right. Written by one command; do not edit:
-
-\`\`\`
-scripts/accuracy.mjs build/release/bin/spherechain [CHARACTER]... [--depth CHARACTER[+MOTION]...] > docs/accuracy.md
-\`\`\`
-
-## Method
-
-1. The truth is every pair of triangles that intersects in the deformed mesh, decided exactly by CGAL (\`spherechain validate\`).
-2. ${kFrames} frames of each motion, evenly spread. \`samples/poses\` is eight files, taken together.
-3. **Recall** is the part of the true pairs whose spheres are reported. **Precision** is the part of the reported pairs of spheres that have a true
-   pair, or whose triangles are closer than 0.3 % of the height. **Any** and **all** are frames with a true pair in which one, or each, is found.
-4. **Missed, mm** is the [depth](concepts.md#how-deep-which-way) of the deepest fault (penetration or deep fold) of which nothing is reported.
-5. Profile \`balanced\` puts ${counts.balanced} spheres into the human. Profile \`paper\` puts ${counts.paper}, with none in head, hands and feet.
-6. A capsule a bone is what games have instead. It is fitted to the triangles that its bone moves most; its radius is a quantile of their distances.
-   Neighbours on the skeleton are ignored, and others follow the rest rule of spheres. Its quantile is the best for that motion (harmonic mean of recall and
-   precision); the spheres have one default for all.
-7. Shares are in %.
-
-## Which to choose
-
-| you need | take | recall | precision |
-|---|---|---|---|
-| nothing missed, nothing wrong | skin contacts (\`body.contacts()\`) | ${percent(recall(skin))} | ${percent(precision(skin))} |
-| an alarm for a microsecond | spheres, detect radius | ${percent(recall(all))} | ${percent(precision(all))} |
-| fewer false alarms for a microsecond | spheres, fit radius | ${percent(recall(fit))} | ${percent(precision(fit))} |
-| the paper's figures | profile \`paper\`, fit radius | ${percent(recall(paper))} | ${percent(precision(paper))} |
-
-The exact triangle contacts miss ${contacts.missing} of the ${all.truth} true pairs below and report ${contacts.extra} others (\`validate --contacts\`, ${contacts.frames} frames).
-Tests along chains alone miss ${Math.round(missedByChains)} of the ${Math.round(all.found)} true pairs that all pairs of spheres find (${percent(share(missedByChains, all.found))} %).
-How spheres do on bodies other than humans, \`scripts/alarms.mjs\` prints. Skin contacts are exact on all of them.
-
-## Skin, spheres, chains and capsules
-
-${table(["motion", "method", "true pairs", "recall", "precision", "pairs a frame", "any", "all", "missed, mm"], rows.flatMap(methods))}
-
-## Spheres and tapered capsules
-
-We tried capsules between neighbouring spheres of a region (the hull of both, following the refit) in place of the spheres, on five characters, with the same
-calibration. Half as many capsules as spheres found as much (99 % of far contacts on all five), and stood out of the body less on the fox alone. Their apart precision was
-as good on the barbarian and CesiumMan and lower on the humans and the fox (human.zae: 26 % with 36 capsules, 48 % with 73 spheres). Half as many spheres find as much
-too, and a test of two capsules costs 4.6 times one of two spheres. So spheres stay; the capsules' code is no longer in the tree (it was last in 0a93137).
-
-## Other volumes
-
-[Colliders](exporting.md) of each shape, fitted anew, rigid with one bone a body part, over all these characters together. The truth here is which body parts touch,
-by the exact skin contacts; parts that hang on each other are left out. **Recall** and **precision** are of pairs of parts that are tested. **Precision at 95** is what is
-left with the least padding of all volumes that finds 95 % (padding in % of the height). **Not tested** is the share of touching pairs that are ignored, because the
-volumes overlap at rest or one volume stands for both. Then the fit at rest: the share of the skin **inside**, the skin's mean **distance** from the volumes' surface and its
-95th of 100, how far volumes stand **beyond** the skin, 95th of 100, in % of the height; the **volume** in % of the body's.
-
-At equal numbers ellipsoids lie nearest to the skin, and they and capsules are right most often. Engines have no ellipsoids, so exports take cones or capsules;
-for MuJoCo and USD try \`--volumes ellipsoids\`. Rows without a number are as many as \`export\` makes of them unasked.
-
-${volumes()}
-## Depth against brute force
-
-[Depth and direction](concepts.md#how-deep-which-way) of penetrations and deep folds of at least 3 mm (of files without a unit, 0.1 % of the height), ${kJudged} a character, judged by
-\`depth_study\`, which shares no code of theirs: brute force tries ${kDirections} directions and refines the best.
-
-| column | what it says | goal |
-|---|---|---|
-| frees | the first part, moved out and 0.5 mm more, is clear of the second by the exact triangle test | 97 % |
-| 0.9 frees | so it is after nine tenths of the way: the depth was too long | at most 10 % |
-| ≤ 1.25 | the depth is at most 1.25 times the shortest way that brute force finds | 90 % |
-| turns | from one frame to the next the direction turns by more than 90 degrees | at most 2 % |
-| volume | is within 25 % of CGAL's corefinement, where the contour is closed and CGAL has an answer | 90 % |
-| quick | the quick form's depth over the full one's, median and 90th of 100 | |
-| ms | a pair's time, median and 95th of 100, let nothing else run | 0.5, 5 |
-
-${posed.length > 0 ? depth() : ""}
-## Spheres between parts that are far from each other
-
-Recall leaves out what the asset ignores, and spheres whose skins nearly touch at rest are nearly always right. **Far recall** counts only contacts between
-body parts that do not hang on each other or on the same third part, and are 0.3 % of the height apart at rest. Pairs that the asset ignores count, too.
-**Apart precision** leaves out pairs of spheres whose skins are nearer than that at rest. Motions without such a contact have no far recall.
-
-${table(["motion", "far recall", "apart precision", "pairs a frame"], rows.filter((row) => row.detect.length === 1).map(far))}
-
-## What is out of scope
-
-Three classes are left out before anything is compared, in this order: pairs that intersect at rest too (eyes in their sockets), pairs of one sphere's
-triangles, and pairs of neighbouring spheres (elbow, knee, armpit). The last column is the part of the pairs made by motion that this leaves out.
-The exact contacts offer the last two classes as a scope of their own. \`validate --contacts\` compares them with CGAL's too, and the gates of
-tests/quality keep the differences at 0.
-
-${table(["motion", "frames", "intersecting pairs", "at rest too", "one sphere", "neighbours", "true", "left out %"], rows.map(scope))}
-
-## Over the radius
-
-Recall / precision / pairs a frame if every detect radius is scaled.
-
-${curve("radius_curve", (p) => `x ${p.scale.toFixed(1)}`)}
-
-## Over the rest rule
-
-The same if every rest pair is reported below one part of its distance at rest, in place of the calibrated distance.
-
-${curve("rest_curve", (p) => p.rest_scale.toFixed(1))}
-
-## Capsules over their quantile
-
-The number of capsules stands behind the motion's name. The recall in brackets counts only what a ragdoll could find: it leaves out true pairs
-within one capsule or between neighbouring ones, and adds those within one sphere.
-
-${capsuleCurve()}
-`);
+const page = join(root, "docs/accuracy.md");
+let text = readFileSync(page, "utf8");
+const scores = (s) => [percent(recall(s)), percent(precision(s))];
+text = replaceSection(text, "answer", answerSection({ commit, contacts, truth: all.truth,
+  missedByChains: Math.round(missedByChains), foundByAll: Math.round(all.found), share: percent(share(missedByChains, all.found)),
+  rows: [
+    ["nothing missed, nothing wrong", "skin contacts (`body.contacts()`)", ...scores(skin)],
+    ["an alarm for a microsecond", "spheres, detect radius", ...scores(all)],
+    ["fewer false alarms for a microsecond", "spheres, fit radius", ...scores(fit)],
+    ["the paper's figures", "profile `paper`, fit radius", ...scores(paper)],
+  ] }));
+text = replaceSection(text, "alarm", table(["motion", "true pairs", "recall", "far recall", "precision", "apart precision", "pairs a frame"], rows.map(alarm)));
+if (posed.length > 0) {
+  const depth = runs(join(dirname(tool), "depth_study"), "--judged", String(kJudged), ...posed);
+  text = replaceSection(text, "depth", `Commit ${commit}, ${cpus()[0].model}, ${kJudged} contacts a character, brute force over ${kDirections} directions.\n\n${depth}`);
+}
+writeFileSync(page, text);

@@ -208,7 +208,7 @@ Library read_library(const std::vector<std::string>& paths, const std::string& m
   }
   if (out.empty())
     throw Error(ExitCode::kFile,
-                paths.front() + ": has no characters (docs/cli.md lists the endings that are searched for)");
+                paths.front() + ": has no characters (docs/cli/check.md lists the endings that are searched for)");
   if (!motion.empty()) {
     const Motions shared = motions_at(motion, library.folders);
     for (LibraryCharacter& character : out) append(character.motions, shared);

@@ -38,9 +38,9 @@ struct OutputFile {
 // True if the command has --force: it may replace files that this tool did not write.
 enum class Force { kNone, kOffered, kGiven };
 
-// The rule of every output of every command (docs/cli.md). No output is an input, a file that a mesh is read with, or
-// another output, under whatever name or link: Error(kUsage) that names both. Each output's folder is there and
-// writable, and a file that is there already is empty or this tool's, of the same kind: Error(kFile).
+// The rule of every output of every command (docs/cli/README.md). No output is an input, a file that a mesh is read
+// with, or another output, under whatever name or link: Error(kUsage) that names both. Each output's folder is there
+// and writable, and a file that is there already is empty or this tool's, of the same kind: Error(kFile).
 void check_outputs(const std::vector<CommandFile>& inputs, const std::vector<OutputFile>& outputs, Force force);
 
 }  // namespace spherechain::baker

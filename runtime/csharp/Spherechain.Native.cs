@@ -144,13 +144,13 @@ namespace Spherechain
         Rest = 0,
         /// <summary>another layer of the same place (a garment on the body), or most of it is hidden</summary>
         Shell = 1,
-        /// <summary>hardly deep; or no fold, and little goes in</summary>
+        /// <summary>shallow; or no fold, and only a small share of the smaller part is inside</summary>
         Touch = 2,
-        /// <summary>of neighbours on the body, near the joint: an elbow, a groin</summary>
+        /// <summary>neighbours on the body meet near their joint: an elbow, a groin</summary>
         Fold = 3,
-        /// <summary>a deep fold of one piece of skin</summary>
+        /// <summary>a fold within one piece of skin that is deep: a fault</summary>
         DeepFold = 4,
-        /// <summary>all else: a fault</summary>
+        /// <summary>everything else: a fault</summary>
         Penetration = 5,
     }
 
@@ -272,26 +272,27 @@ namespace Spherechain
     {
         /// <summary>SC_RULE_VERSION; others are refused</summary>
         public uint Version;
-        /// <summary>the pose's units. Below it parts just touch, and what is deeper is no touch; 0: the next five</summary>
+        /// <summary>0: the next five fields decide what is a touch. Else depth alone decides: shallower intersections are touches, deeper ones are not. In the pose's units</summary>
         public float TouchDepth;
-        /// <summary>a touch is less deep than touch_metres metres, but at least touch_min and at most touch_max</summary>
+        /// <summary>skins up to this depth only touch: touch_metres, but not less than touch_min and not more than touch_max</summary>
         public float TouchMetres, TouchMin, TouchMax;
-        /// <summary>or up to so many times that, where less goes in than `swallowed` and it is no fold</summary>
+        /// <summary>an intersection up to so many times deeper is still a touch if it is no fold and its sc_measures.swallowed is below `swallowed`</summary>
         public float TouchTimes;
+        /// <summary>see touch_times</summary>
         public float Swallowed;
-        /// <summary>more of the line touches at rest: it was modelled so</summary>
+        /// <summary>rest: at least this share of the line touches at rest</summary>
         public float AtRest;
-        /// <summary>less of the line is visible</summary>
+        /// <summary>shell: less than this share of the line is visible</summary>
         public float Hidden;
-        /// <summary>two spots of two pieces are closer at rest: layers of one place</summary>
+        /// <summary>shell: the two spots are on two pieces of skin, and closer than this at rest</summary>
         public float Shell;
-        /// <summary>two spots of parts that are near each other are closer at rest</summary>
+        /// <summary>fold: the two spots are on parts that are near each other, and closer than this at rest</summary>
         public float Fold;
-        /// <summary>two spots of any parts are closer at rest: a joint may have no bone of its own</summary>
+        /// <summary>fold: two spots of any parts are closer than this at rest. A joint may lack a bone</summary>
         public float Neighbours;
-        /// <summary>sides that face each other more fold: a thigh lies flat on the abdomen</summary>
+        /// <summary>fold: the sides face each other more than this: a thigh lies flat on the abdomen</summary>
         public float FoldFacing;
-        /// <summary>a fold of one piece that is deeper is a fault</summary>
+        /// <summary>deep fold: a fold within one piece of skin is deeper than this</summary>
         public float DeepFold;
     }
 
@@ -346,15 +347,15 @@ namespace Spherechain
     public struct StepContact  // sc_step_contact
     {
         public uint PartA, PartB;
-        /// <summary>1: they intersect there: more say the contacts of that pose</summary>
+        /// <summary>1: they intersect in that pose: ask for its contacts</summary>
         public int AtStart, AtEnd;
         /// <summary>the first time at which they touch; 0 with at_start</summary>
         public float Begin;
-        /// <summary>the last time; 1 with at_end. In between they may part and meet again</summary>
+        /// <summary>the last time; 1 with at_end. They may part and meet again before it</summary>
         public float End;
-        /// <summary>that touch at `begin`, by the source's numbers; SC_NO_TRIANGLE with at_start</summary>
+        /// <summary>these touch at `begin`; the source's numbers; SC_NO_TRIANGLE with at_start</summary>
         public uint TriangleA, TriangleB;
-        /// <summary>where they do; zero with at_start</summary>
+        /// <summary>where these triangles touch; zero with at_start</summary>
         public Vec3 At;
     }
 

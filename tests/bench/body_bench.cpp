@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Goal P12 (docs/performance.md): exact contacts of two bodies that wrestle, and of a crowd. Checks that all find the
+// Exact contacts of two bodies that wrestle, and of a crowd (docs/performance.md). Checks that all find the
 // same, then times them in turn.
 #include <fmt/format.h>
 #include <time.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Goals P6 and P10 (docs/performance.md): exact skin contacts, and their depth. Checks that all contestants find the
-// same, then times them.
+// Exact skin contacts and their depth (docs/performance.md). Checks that all contestants find the same, then times
+// them.
 #include <fmt/format.h>
 #include <time.h>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Goals P1 to P4 (docs/performance.md): one command, one table. First that all find the same, then how long it takes.
+// Spheres and their pairs (docs/performance.md): one command, one table. First all contestants must find the same
+// pairs, then they are timed.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

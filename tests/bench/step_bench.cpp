@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Goal P12 (docs/performance.md): what touches between two frames. Checks that the poses of substeps have nothing that
+// Contacts between two frames (docs/performance.md). Checks that the poses of substeps have nothing that
 // the steps lack, then times both in turn.
 #include <fmt/format.h>
 #include <time.h>
@@ -362,7 +362,7 @@ class Bench {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("What touches between two frames: time and comparison (docs/performance.md, P12)");
+  CLI::App app("What touches between two frames: time and comparison (docs/performance.md)");
   int steps = 40, passes = 21;
   double rate = 30;
   int check = 0;

@@ -49,9 +49,9 @@ typedef struct sc_query {
   const sc_rule* rule SC_ZERO; /* null: sc_default_rule() */
   uint32_t classes SC_ZERO;    /* bit k: penetrations of class k are listed; 0: faults alone */
   size_t limit SC_ZERO;        /* the worst so many; 0: as many as there is room for */
-  /* The last penetrations of the same question: a fault's direction then turns by less than 30 degrees while such a way
-   * is at most half as long again as the shortest (sc_penetration.distance). The body's last list is valid for that
-   * long; who asks several questions in turn keeps a copy of each list. */
+  /* Pass the last result of the same question to keep directions steady. A fault's direction then turns by less than 30
+   * degrees, as long as that way is at most half as long again as the shortest (sc_penetration.distance). The body's
+   * last list stays valid for this. If you ask several questions in turn, keep a copy of each list. */
   const sc_penetration* previous SC_ZERO;
   size_t previous_count SC_ZERO;
   float tolerance SC_ZERO;  /* of steps, a share of the height; 0: 0.0001 */
@@ -128,7 +128,9 @@ SPHERECHAIN_API sc_status sc_find_contacts(sc_body* body, const sc_body* other, 
                                            sc_contacts* found) SC_NOEXCEPT;
 SPHERECHAIN_API sc_status sc_find_sphere_pairs(sc_body* body, const sc_query* query,
                                                sc_sphere_pairs* found) SC_NOEXCEPT;
-/* The touches on the way from the pose before to this one. Matrices are taken as moving linearly. */
+/* Finds the body parts that touch on the way from the last pose to this one. Matrices and vertices are blended
+ * linearly. Finds every contact deeper than `tolerance`, and reports none that does not exist. Shallower contacts may
+ * be missed. Times are accurate to the same distance. */
 SPHERECHAIN_API sc_status sc_find_steps(sc_body* body, const sc_body* other, const sc_query* query,
                                         sc_steps* found) SC_NOEXCEPT;
 /* The body parts below the ground; `other` is SC_FLOOR. */

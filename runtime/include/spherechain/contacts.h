@@ -58,11 +58,11 @@ typedef struct sc_penetration {
 /* Two body parts that touch in a step. Times are shares of the step: 0 is its start, 1 its end. */
 typedef struct sc_step_contact {
   uint32_t part_a, part_b;
-  int32_t at_start, at_end;        /* 1: they intersect there: more say the contacts of that pose */
+  int32_t at_start, at_end;        /* 1: they intersect in that pose: ask for its contacts */
   float begin;                     /* the first time at which they touch; 0 with at_start */
-  float end;                       /* the last time; 1 with at_end. In between they may part and meet again */
-  uint32_t triangle_a, triangle_b; /* that touch at `begin`, by the source's numbers; SC_NO_TRIANGLE with at_start */
-  sc_vec3 at;                      /* where they do; zero with at_start */
+  float end;                       /* the last time; 1 with at_end. They may part and meet again before it */
+  uint32_t triangle_a, triangle_b; /* these touch at `begin`; the source's numbers; SC_NO_TRIANGLE with at_start */
+  sc_vec3 at;                      /* where these triangles touch; zero with at_start */
 } sc_step_contact;
 
 #if defined(__cplusplus)

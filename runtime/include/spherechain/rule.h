@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* Which measurements of two body parts in each other are a fault? */
+/* The rule that decides which intersections of two body parts are a fault. */
 #pragma once
 
 #include "spherechain/types.h"
 
-/* A contact of two parts as a person would call it: the first class that applies. From SC_CLASS_DEEP_FOLD on it is a
- * fault. */
+/* The class of an intersection, as a person would name it. The first class that applies is taken. SC_CLASS_DEEP_FOLD
+ * and SC_CLASS_PENETRATION are faults. */
 SC_ENUM(sc_penetration_class){
     SC_CLASS_REST = 0,        /* the two spots touch in the rest pose, too */
     SC_CLASS_SHELL = 1,       /* another layer of the same place (a garment on the body), or most of it is hidden */
-    SC_CLASS_TOUCH = 2,       /* hardly deep; or no fold, and little goes in */
-    SC_CLASS_FOLD = 3,        /* of neighbours on the body, near the joint: an elbow, a groin */
-    SC_CLASS_DEEP_FOLD = 4,   /* a deep fold of one piece of skin */
-    SC_CLASS_PENETRATION = 5, /* all else: a fault */
+    SC_CLASS_TOUCH = 2,       /* shallow; or no fold, and only a small share of the smaller part is inside */
+    SC_CLASS_FOLD = 3,        /* neighbours on the body meet near their joint: an elbow, a groin */
+    SC_CLASS_DEEP_FOLD = 4,   /* a fold within one piece of skin that is deep: a fault */
+    SC_CLASS_PENETRATION = 5, /* everything else: a fault */
 };
 
 /* How two body parts hang together. */
@@ -24,9 +24,9 @@ SC_ENUM(sc_relation){
     SC_RELATION_TWO_BODIES = 4, /* they are of two bodies */
 };
 
-/* The measurements of two body parts that intersect. A class follows from them alone, so stored results can be
- * classified again: quick ones by the rule that they were asked with; those of SC_DETAIL_FULL by other rules too, where
- * `swallowed` is known or the rule sets touch_depth. */
+/* The measurements of two body parts that intersect. The class follows from them alone, so you can store them and
+ * classify them again. Measurements of a quick query (SC_DETAIL_QUICK) fit only the rule of that query. Those of
+ * SC_DETAIL_FULL fit any rule if `swallowed` is known, or if the rule sets touch_depth. */
 typedef struct sc_measures {
   float depth;          /* > 0: the way out; the pose's units */
   float volume;         /* of the one part inside the other; negative: not known. The pose's units */
@@ -43,23 +43,25 @@ typedef struct sc_measures {
   int32_t is_one_piece; /* 1: the two spots are of one piece of skin */
 } sc_measures;
 
-/* The limits of a class. A fault is what a person would mend; sc_default_rule() was tuned on pictures that people
- * classed (docs/concepts.md). Lengths are shares of the character's height, but for `touch_depth` and `touch_metres`. A
- * change of a default is a new version. */
+/* The limits of the classes. A fault is an intersection that a person would mend; sc_default_rule() was tuned on judged
+ * pictures (docs/concepts.md). Lengths are shares of the character's height, except touch_depth and touch_metres. If a
+ * default changes, the version changes. */
 typedef struct sc_rule {
   uint32_t version;  /* SC_RULE_VERSION; others are refused */
-  float touch_depth; /* the pose's units. Below it parts just touch, and what is deeper is no touch; 0: the next five */
-  float touch_metres, touch_min, touch_max; /* a touch is less deep than touch_metres metres, but at least touch_min and
-                                               at most touch_max */
-  float touch_times; /* or up to so many times that, where less goes in than `swallowed` and it is no fold */
-  float swallowed;
-  float at_rest;     /* more of the line touches at rest: it was modelled so */
-  float hidden;      /* less of the line is visible */
-  float shell;       /* two spots of two pieces are closer at rest: layers of one place */
-  float fold;        /* two spots of parts that are near each other are closer at rest */
-  float neighbours;  /* two spots of any parts are closer at rest: a joint may have no bone of its own */
-  float fold_facing; /* sides that face each other more fold: a thigh lies flat on the abdomen */
-  float deep_fold;   /* a fold of one piece that is deeper is a fault */
+  float touch_depth; /* 0: the next five fields decide what is a touch. Else depth alone decides: shallower
+                        intersections are touches, deeper ones are not. In the pose's units */
+  float touch_metres, touch_min, touch_max; /* skins up to this depth only touch: touch_metres, but not less than
+                                               touch_min and not more than touch_max */
+  float touch_times; /* an intersection up to so many times deeper is still a touch if it is no fold and its
+                        sc_measures.swallowed is below `swallowed` */
+  float swallowed;   /* see touch_times */
+  float at_rest;     /* rest: at least this share of the line touches at rest */
+  float hidden;      /* shell: less than this share of the line is visible */
+  float shell;       /* shell: the two spots are on two pieces of skin, and closer than this at rest */
+  float fold;        /* fold: the two spots are on parts that are near each other, and closer than this at rest */
+  float neighbours;  /* fold: two spots of any parts are closer than this at rest. A joint may lack a bone */
+  float fold_facing; /* fold: the sides face each other more than this: a thigh lies flat on the abdomen */
+  float deep_fold;   /* deep fold: a fold within one piece of skin is deeper than this */
 } sc_rule;
 
 #define SC_RULE_VERSION 2

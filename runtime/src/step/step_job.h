@@ -13,14 +13,14 @@ enum Blend : std::int32_t {
   SC_BLEND_NLERP = 2,   // joints: rotations as quaternions, linearly, brought back to unit length
 };
 
-// A body, and where it stands a step later. Of one body alone ignored_parts is not read.
+// A body, and where it stands a step later. `ignored_parts` applies to two bodies only.
 //
 // SC_BLEND_LINEAR: from body.pose to `end`, both with bones, or both with vertices.
 // SC_BLEND_SLERP, SC_BLEND_NLERP: from start_joints to end_joints, each in its parent's space, composed down the
 // skeleton as engines do; poses have morph weights at most, no bones and no vertices. The bone b of the asset gets the
-// world matrix of its joint times the asset's inverse bind matrix (sc_asset_bone()); joints may be there that move no
-// bone; a bone without a joint stays at rest. A rotation goes the shorter way round: of one that turns a joint by half
-// a turn or more in one step, that way is assumed; of exactly half a turn, the sign that the quaternions have.
+// world matrix of its joint times the asset's inverse bind matrix (sc_asset_bone()). Joints that move no bone are fine.
+// A bone without a joint stays at rest. Rotations take the shorter way. A joint that turns by half a turn or more in
+// one step is therefore misread: use smaller steps. At exactly half a turn the signs of the quaternions decide.
 struct Motion {
   JobBody body;
   Pose end;
@@ -33,12 +33,12 @@ struct Motion {
       nullptr;  // of each bone of the asset: sc_bind_joints(); null: joint b moves bone b
 };
 
-// All pairs of body parts that touch on the way from one pose to the next: of body a with itself, where b.body.asset is
-// null, else of a and b. Nothing is missing and nothing made up, but for the tolerance: what comes no further into
-// contact than that, measured as the change of the distance of two corners of the skin, may be found or not; and times
-// are as exact. Of corners that move against each other by more than 32768 tolerances in the step, about three heights,
-// it is larger. Left out is what a SkinContactJob, or a BodyContactJob, leaves out. Matrices and vertices that are not
-// finite touch nothing.
+// Finds the pairs of body parts that touch on the way from one pose to the next: of body a with itself if b.body.asset
+// is null, else of a with b. Finds every contact deeper than `tolerance`, and reports none that does not exist.
+// Contacts shallower than `tolerance` may be missed. Times are accurate to the same distance. Distances are changes of
+// the distance between two corners of the skin. The tolerance grows when two corners move by more than 32768 tolerances
+// (about three heights) relative to each other in one step. The pairs that a SkinContactJob or a BodyContactJob ignores
+// are ignored here, too. Matrices and vertices that are not finite touch nothing.
 struct StepJob {
   Motion a, b;
   Target target{};
