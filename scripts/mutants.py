@@ -62,6 +62,12 @@ def program_of(test):
     return next(program for folder, program in PROGRAMS.items() if test.startswith(folder + "/"))
 
 
+def build(program):
+    """True if it compiles. Tests of the baker run the tool, too."""
+    tool = [] if program in ("test_runtime", "test_contacts") else ["spherechain"]
+    return run(["ninja", "-C", BUILD, program, *tool]).returncode == 0
+
+
 def sources_of(test):
     """The code under a test file, as paths: what shares its name, or else all that it includes."""
     text = (TREE / test).read_text()
@@ -95,7 +101,7 @@ def mutants_of(sources, count, random_numbers):
 
 def is_killed(program, test, seconds):
     try:
-        return run([BUILD / "bin" / program, f"-sf=*{test}", "-ts=", "-tse=many bakes,long runs"], timeout=seconds, cwd=TREE).returncode != 0
+        return run([BUILD / "bin" / program, f"-sf=*{test}", "-tse=many bakes,long runs"], timeout=seconds, cwd=TREE).returncode != 0
     except subprocess.TimeoutExpired:
         return True
 
@@ -103,7 +109,7 @@ def is_killed(program, test, seconds):
 def try_mutants(test, count, random_numbers):
     """Returns how many mutants were tried, and the survivors."""
     program = program_of(test)
-    if run(["ninja", "-C", BUILD, program]).returncode != 0:
+    if not build(program):
         sys.exit(f"mutants: {program} does not build")
     start = time.monotonic()
     if is_killed(program, test, 600):
@@ -120,7 +126,7 @@ def try_mutants(test, count, random_numbers):
         old = lines[number].strip()
         lines[number] = line.rstrip() + "\n"
         path.write_text("".join(lines))
-        if run(["ninja", "-C", BUILD, program]).returncode == 0:
+        if build(program):
             tried += 1
             if not is_killed(program, test, seconds):
                 survivors.append(f"{source}:{number + 1}: {old}  ->  {line.strip()}")
