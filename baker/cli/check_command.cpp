@@ -5,7 +5,6 @@
 #include <chrono>
 #include <filesystem>
 #include <optional>
-#include <thread>
 
 #include "baker/check/formats.h"
 #include "baker/check/report_folder.h"
@@ -17,6 +16,7 @@
 #include "baker/cli/progress.h"
 #include "baker/fix/fix_library.h"
 #include "baker/import/notes.h"
+#include "baker/os/parallel.h"
 #include "baker/os/work_folder.h"
 #include "baker/os/written_file.h"
 #include "baker/play/asset_file.h"
@@ -205,7 +205,7 @@ ExitCode run_check(const CheckOptions& options) {
   RunOptions run;
   run.fps = options.fps;
   run.continuous = options.continuous;
-  run.jobs = options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  run.jobs = options.jobs > 0 ? options.jobs : static_cast<int>(processor_count());
   const auto check = [&](const Store& store) {
     RunProgress progress;
     return check_library(library, run, store, [&](const RunState& state) { progress.show(state); });

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "baker/os/parallel.h"
 
+#include <sched.h>
+
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -9,7 +11,13 @@
 
 namespace spherechain::baker {
 
-std::size_t thread_count() { return std::clamp(std::thread::hardware_concurrency(), 1U, 16U); }
+std::size_t processor_count() {
+  cpu_set_t set;
+  const bool is_known = ::sched_getaffinity(0, sizeof set, &set) == 0;
+  return std::max<std::size_t>(1, is_known ? static_cast<std::size_t>(CPU_COUNT(&set)) : 1);
+}
+
+std::size_t thread_count() { return std::min<std::size_t>(processor_count(), 16); }
 
 // The threads end with the call: a process that is forked later has no half of a pool of threads.
 void run_parallel(std::size_t count, const std::function<void(std::size_t thread, std::size_t i)>& work) {

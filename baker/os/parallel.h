@@ -6,7 +6,9 @@
 
 namespace spherechain::baker {
 
-// Number of threads that run_parallel() uses, at least 1.
+// Number of processors that this process may run on (taskset, Slurm), at least 1.
+std::size_t processor_count();
+// Number of threads that run_parallel() uses: one a processor, at most 16.
 std::size_t thread_count();
 
 // Calls work(thread, i) for all i below `count`, on thread_count() threads; `thread` is below that, and no two calls
