@@ -14,7 +14,7 @@ std::vector<HeatSpot> heat_of(const ClipEvents& found, double mm) {
   std::vector<HeatSpot> out;
   for (std::uint32_t e = 0; e < found.spans.size(); ++e) {
     std::map<std::uint32_t, Heat> heat;
-    for (const std::size_t m : found.spans[e].meetings) {
+    for (const std::size_t m : found.spans[e].penetrations) {
       const auto& [frame, penetration] = found.penetrations[m];
       if (!is_fault(penetration.kind)) continue;
       for (const TrianglePair& pair : found.contacts[m]) {

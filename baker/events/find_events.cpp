@@ -79,7 +79,7 @@ void EventFinder::measure(const ClipFrames& clip, FramePenetration& penetration,
 void EventFinder::find_worst(const ClipFrames& clip, ClipEvents& found, EventSpan& span) {
   const auto penetration = [&](std::size_t m) -> Penetration& { return found.penetrations[m].found; };
   std::vector<std::size_t> whole, between;
-  for (const std::size_t m : span.meetings) {
+  for (const std::size_t m : span.penetrations) {
     const bool lies_between = animated_.frame_at(clip.first + found.penetrations[m].frame).between > 0;
     (lies_between ? between : whole).push_back(m);
   }
@@ -98,7 +98,7 @@ void EventFinder::find_worst(const ClipFrames& clip, ClipEvents& found, EventSpa
   }
   measure(clip, found.penetrations[span.deepest], found.contacts[span.deepest]);
   const Penetration& worst = penetration(span.deepest);
-  for (const std::size_t m : span.meetings) {
+  for (const std::size_t m : span.penetrations) {
     penetration(m).measures.depth = std::min(penetration(m).measures.depth, worst.measures.depth);
     penetration(m).kind = std::min(penetration(m).kind, worst.kind);
   }
@@ -123,7 +123,7 @@ Event EventFinder::event_of(const ClipFrames& clip, const ClipEvents& found, con
   if (!is_fault(worst.kind)) return event;
   const int length = span.from <= span.to ? span.to - span.from + 1 : clip.count - span.from + span.to + 1;
   event.depths_mm.assign(static_cast<std::size_t>(length), 0);
-  for (const std::size_t m : span.meetings) {
+  for (const std::size_t m : span.penetrations) {
     const auto& [frame, penetration] = found.penetrations[m];
     if (!is_fault(penetration.kind)) continue;
     const int at = frame >= span.from ? frame - span.from : frame - span.from + clip.count;
