@@ -83,7 +83,7 @@ TEST_CASE("frames between add to the events of whole frames, and join none of th
     std::string out;
     for (const bk::EventSpan& span :
          bk::join_events(meetings(std::vector<double>(numbers.size(), 1)), numbers, false)) {
-      for (const std::size_t m : span.meetings) out += std::to_string(numbers[m]).substr(0, 3) + " ";
+      for (const std::size_t m : span.penetrations) out += std::to_string(numbers[m]).substr(0, 3) + " ";
       out += "| ";
     }
     return out;
