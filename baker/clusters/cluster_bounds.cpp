@@ -89,7 +89,6 @@ std::vector<ClusterMorph> morphs_of(const std::vector<SurfaceVertex>& vertices, 
 void bound_cluster(const Character& character, const std::vector<SurfaceVertex>& vertices, Cluster& cluster) {
   Mesh points;
   for (const Index v : cluster.vertices) points.positions.push_back(character.source_positions[vertices[v].source]);
-  cluster.ball = ball_around(points);
   cluster.box = box_around(points);
   cluster.bones = bones_of(vertices, cluster);
   cluster.morphs = morphs_of(vertices, cluster);

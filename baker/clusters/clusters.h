@@ -57,8 +57,7 @@ struct Cluster {
   std::uint32_t sphere;
   std::vector<Index> triangles;                   // of Character::skin, in the order of their source triangles
   std::vector<Index> vertices;                    // of Clusters::vertices, ascending; at most 255
-  Ball ball{Vec3::Zero(), 0};                     // around them at rest
-  ClusterBox box{Vec3::Zero(), Vec3::Zero(), 0};  // the same, along the axes
+  ClusterBox box{Vec3::Zero(), Vec3::Zero(), 0};  // around them at rest
   std::vector<ClusterBone> bones;                 // ascending
   std::vector<ClusterMorph> morphs;
 };
@@ -114,7 +113,7 @@ std::vector<SurfaceVertex> surface_vertices(const Character& character, const Bo
 std::vector<Hull> make_hulls(const Character& character, const std::vector<SurfaceVertex>& vertices,
                              std::vector<std::vector<Index>> of_spheres);
 
-// Fills in a cluster's ball, box, bones and morphs from its vertices.
+// Fills in a cluster's box, bones and morphs from its vertices.
 void bound_cluster(const Character& character, const std::vector<SurfaceVertex>& vertices, Cluster& cluster);
 
 }  // namespace spherechain::baker

@@ -205,6 +205,26 @@ TEST_CASE("at rest a cluster's box contains its vertices to the last bit, and th
   }
 }
 
+TEST_CASE("a morph target's ball contains the deltas of a cluster's vertices to the last bit, and is no larger") {
+  const Bake& bake = morphing_person();
+  std::size_t balls = 0;
+  for (const Cluster& cluster : bake.clusters.clusters) {
+    for (const ClusterMorph& morph : cluster.morphs) {
+      double farthest = 0;
+      for (const Index v : cluster.vertices) {
+        const std::vector<MorphDelta>& deltas = bake.clusters.vertices[v].morphs;
+        const auto own = std::ranges::find(deltas, morph.target, &MorphDelta::target);
+        const Vec3 delta = own == deltas.end() ? Vec3::Zero() : Vec3(own->delta);
+        farthest = std::max(farthest, (delta - morph.ball.center).norm());
+      }
+      REQUIRE(farthest <= morph.ball.radius);
+      REQUIRE(morph.ball.radius <= farthest * (1 + 1e-6));
+      ++balls;
+    }
+  }
+  CHECK(balls > 10);
+}
+
 TEST_CASE("without morphs a sphere's vertices are near its hull, as near as the asset says" *
           doctest::test_suite("many bakes")) {
   std::mt19937 random(5);
