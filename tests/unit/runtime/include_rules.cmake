@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # cmake -D ROOT=<repository> -P include_rules.cmake: fails on an include that runtime/, cuda/ or a stage of the baker must
-# not have.
+# not have, and on an import that a folder of the page must not have.
 
 # The baker's folders. Each may include those before it and itself.
 set(stages mesh import roles segment wrap fit chains rig bind edits clusters write calibrate pipeline motion play volumes filter truth measure report
@@ -53,6 +53,29 @@ foreach(source ${baker_sources})
       refuse(${source} ${included})
     endif()
   endforeach()
+endforeach()
+
+# The folders of the page. Each may import from those before it and itself. Files beside the folders put them together.
+set(rooms base model scene panels editor)
+file(GLOB_RECURSE page_sources ${ROOT}/baker/page/web/src/*.js)
+foreach(source ${page_sources})
+  file(RELATIVE_PATH path ${ROOT}/baker/page/web/src ${source})
+  string(REGEX REPLACE "/.*" "" room ${path})
+  if(path MATCHES "/" AND NOT room STREQUAL "report")
+    list(FIND rooms ${room} own)
+    if(own EQUAL -1)
+      message(FATAL_ERROR "${room} is missing in the list of rooms of include_rules.cmake")
+    endif()
+    file(STRINGS ${source} lines REGEX "^(import|export).*'\\.\\./")
+    foreach(line IN LISTS lines)
+      string(REGEX REPLACE "^.*'\\.\\./([^']*)'.*$" "\\1" imported "${line}")
+      string(REGEX REPLACE "/.*" "" other ${imported})
+      list(FIND rooms ${other} place)
+      if(place EQUAL -1 OR place GREATER own)
+        refuse(${source} ${imported})
+      endif()
+    endforeach()
+  endif()
 endforeach()
 
 if(found)

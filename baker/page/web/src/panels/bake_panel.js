@@ -1,5 +1,5 @@
-import { h } from './dom.js';
-import { length, number, percent, plural } from './format.js';
+import { h } from '../base/dom.js';
+import { length, number, percent, plural } from '../base/format.js';
 
 // Where the asset comes from and what its bake reached: the figures people ask for first; with the method the whole report.
 
