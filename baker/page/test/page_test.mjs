@@ -406,6 +406,9 @@ test('the worst misses lead to their frame, and the bake is shown whole', async 
   await page.locator('#tab-bake').click();
   const text = await page.locator('#bake').innerText();
   for (const part of [pages.inspect.source.sha256, pages.inspect.writer, pages.report.counts.why]) assert.ok(text.includes(part), part);
+  const settings = await page.locator('#bake th[scope=row]').allTextContents();
+  assert.ok(settings.includes('penetration depth'));
+  for (const name of ['rays', 'delta', 'limb step', 'spheres per level']) assert.ok(!settings.includes(name), name);
 });
 
 test('view refuses what is about another asset, or not whole, and writes no page', () => {
