@@ -14,9 +14,9 @@ import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync
 import { tmpdir } from "node:os";
 import { basename, join, resolve } from "node:path";
 import { deflateSync } from "node:zlib";
-import { readModel } from "../baker/page/web/src/model.js";
-import { CLASSES } from "../baker/page/web/src/contacts.js";
-import { Skin } from "../baker/page/web/src/skin.js";
+import { readModel } from "../baker/page/web/src/model/model.js";
+import { CLASSES } from "../baker/page/web/src/model/contacts.js";
+import { Skin } from "../baker/page/web/src/model/skin.js";
 
 const kCount = 50, kOfPair = 3, kCameras = 60, kOfSheet = 3, kLarge = 360, kDeepest = 10, kPenetration = 5;
 const kBlue = [52, 120, 210], kOrange = [240, 130, 40], kGrey = [190, 190, 190];

@@ -330,6 +330,24 @@ void write_page(const std::filesystem::path& folder, const Results& results) {
   baker::write_atomically(folder / "index.html", page + "</body></html>\n");
 }
 
+// Markdown alone: the page has the results, not how to repeat them.
+constexpr const char* kSettings = R"(## Settings of these experiments
+
+`bake --config` takes these keys too. Only these experiments turn them; for a product leave them as they are.
+
+| key | values | default | meaning |
+|---|---|---|---|
+| `rays` | 8 to 4096 | 80 | rays of a ring around a limb, and of a disk in the torso |
+| `delta` | 0.0001 to 0.2 | 0.015 | how far the torso's disk climbs at a time, of the height |
+| `limb_step` | 0.0001 to 0.05 | 0.0015 | how far the ring marches along a limb at a time, of the height |
+| `spheres_per_level` | 1 to 3 | 2 | spheres side by side on a level of the torso |
+| `refit` | `moments`, `paper` | `moments` | how spheres follow the skin; `moments` is exact at rest |
+| `pivots` | 4 to 16; with refit `paper` 2 to 16 | 8; with refit `paper` 4 | triangles that carry a sphere; the bake takes up to 16 where so few cannot carry it |
+
+Profile `paper` is `{"refit": "paper", "pivots": 4, "extremities": false}`. With refit `paper`, each rest pair is reported nearer than nine tenths of its distance at rest; a prop cannot have it.
+
+)";
+
 void write_docs(const std::filesystem::path& file, const Results& results) {
   const std::filesystem::path folder = std::filesystem::path(file).replace_extension();
   std::filesystem::create_directories(folder);
@@ -345,6 +363,7 @@ void write_docs(const std::filesystem::path& file, const Results& results) {
       "are called `chains` and `all_pairs`.\n"
       "- The run also writes `out/paper/index.html`, with all figures, and a CSV file for each table.\n\n",
       kTitle);
+  page += kSettings;
   for (const Section& section : sections(results)) {
     page += "## " + section.title + "\n\n";
     for (const std::string& paragraph : section.text) page += paragraph + "\n\n";

@@ -3,8 +3,8 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
-import { launch, open, silent } from './browser.mjs';
+import { before, test } from 'node:test';
+import { hold, launch, open, silent } from './browser.mjs';
 
 const { SPHERECHAIN_TOOL: tool, SPHERECHAIN_HUMAN: human, SPHERECHAIN_CHROMIUM: chromium, SPHERECHAIN_OUT: folder } = process.env;
 const run = (...words) => execFileSync(tool, words, { encoding: 'utf8' });
@@ -17,9 +17,8 @@ const canonical = ({ spheres, ignored_parts: parts }) => [
 ];
 const distance = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
 
-let browser;
-before(async () => (browser = await launch(chromium)));
-after(() => browser?.close());
+let rest; // opened once: a narrow window first
+before(async () => (rest = await open(await launch(chromium), file('rest.html'), { width: 800, height: 600 })));
 
 // Clicks around until a sphere is picked that was not before; where that was.
 async function pickAnother(page, already) {
@@ -37,11 +36,27 @@ async function pickAnother(page, already) {
 }
 const sphere = async (page, id) => (await edits(page)).spheres.find((one) => one.id === id);
 
+test('the editor fits where the window is narrow, and every control has a name', async () => {
+  for (const [width, height] of [[800, 600], [390, 844]]) {
+    const { page } = rest;
+    await page.setViewportSize({ width, height });
+    await page.locator('#tab-edit').click();
+    const wide = await page
+      .locator('body, #results, [role=tablist], #edit, #edit button, .edit-parts, .edit-buttons')
+      .evaluateAll((parts) => parts.filter((part) => part.scrollWidth > part.clientWidth + 1).map((part) => part.id || part.className));
+    assert.deepEqual(wide, [], `at ${width} x ${height}`);
+    const nameless = await page.locator('#edit :is(button, input, select)').evaluateAll((all) => all.filter((e) => !(e.ariaLabel || e.labels?.[0]?.textContent || e.textContent)).length);
+    assert.equal(nameless, 0);
+    silent(rest);
+    await page.locator('#tab-contacts').click();
+  }
+});
+
 test('spheres are moved, resized, added and deleted, parts ignored; undone and redone; and a bake applies what was saved', async () => {
   const inspect = JSON.parse(run('inspect', file('human.sphc'), '--json'));
   const mm = 1e-3 / inspect.source.metres_per_unit;
-  const opened = await open(browser, file('rest.html'), { width: 1280, height: 560 }); // small: drawing by software takes most of the time
-  const { page } = opened;
+  const { page } = rest;
+  await page.setViewportSize({ width: 1280, height: 560 });
   await page.keyboard.press('e');
   assert.ok(await page.locator('#edit').isVisible());
   assert.deepEqual((await edits(page)).file, { spherechain_edits: 1, spheres: [], ignored_parts: [] });
@@ -60,6 +75,7 @@ test('spheres are moved, resized, added and deleted, parts ignored; undone and r
   const along = (axis) => dragged.center.reduce((sum, x, k) => sum + (x - from.center[k]) * axis[k], 0);
   assert.ok(along(left) > 10 * mm && along(up) > 5 * mm && Math.abs(along(forward)) < along(up), `${along(left)} ${along(up)} ${along(forward)}`);
 
+  await hold(page, true);
   await page.keyboard.press('ArrowLeft');
   const nudged = await sphere(page, first.id);
   assert.ok(Math.abs(distance(nudged.center, dragged.center) - 2 * mm) < 0.01 * mm);
@@ -79,6 +95,7 @@ test('spheres are moved, resized, added and deleted, parts ignored; undone and r
     assert.match(await page.locator('#edit-limit').innerText(), /^A radius here is [\d.]+ to [\d,]+ mm[.]$/);
   }
   assert.deepEqual((await edits(page)).file, changed);
+  await hold(page, false);
 
   // A reset keeps the spheres in sight. Where they are not, none is picked and none can be deleted.
   await page.locator('#reset').click();
@@ -104,6 +121,7 @@ test('spheres are moved, resized, added and deleted, parts ignored; undone and r
   await page.locator('#edit-delete').click();
   assert.equal((await edits(page)).picked, null);
   const third = await pickAnother(page, [first.id, second.id]);
+  await hold(page, true);
   await page.keyboard.press('a');
   const { picked: added } = await edits(page);
   assert.ok(added >= inspect.sphere_count && added !== third.id);
@@ -136,11 +154,11 @@ test('spheres are moved, resized, added and deleted, parts ignored; undone and r
   assert.ok(save.y < list.y);
 
   // Frames go on where they were.
+  await hold(page, false);
   await page.locator('#tab-contacts').click();
   assert.match(await page.locator('#contacts').innerText(), /spheres as baked/);
   assert.ok(!(await page.evaluate(() => document.body.classList.contains('editing'))));
-  silent(opened);
-  await opened.close();
+  silent(rest);
 
   const said = run('bake', human, '--edits', file('human_edits.json'), '-o', file('edited.sphc'));
   assert.match(said, /4 of 4 edits applied/);
@@ -151,33 +169,16 @@ test('spheres are moved, resized, added and deleted, parts ignored; undone and r
     assert.ok(found && Math.abs(found.radius - r) < 0.05 * mm, `sphere ${id}`);
   }
   run('view', file('edited.sphc'), '--source', human, '-o', file('edited.html'));
-  const again = await open(browser, file('edited.html'));
-  await again.page.locator('#tab-edit').click();
-  assert.equal(await again.page.locator('#edit-list li').count(), 4);
-  assert.ok(await again.page.locator('#edit-save').isDisabled(), 'nothing is new');
-  assert.ok(await again.page.locator('#stale').isHidden());
-  assert.deepEqual(canonical((await edits(again.page)).file), canonical(all));
+  await rest.show(file('edited.html'));
+  await page.locator('#tab-edit').click();
+  assert.equal(await page.locator('#edit-list li').count(), 4);
+  assert.ok(await page.locator('#edit-save').isDisabled(), 'nothing is new');
+  assert.ok(await page.locator('#stale').isHidden());
+  assert.deepEqual(canonical((await edits(page)).file), canonical(all));
   // After undo, there is no edit of a sphere left, and the one that was deleted is there again.
-  for (let i = 0; i < 3; ++i) await again.page.locator('#edit-list .link').first().click();
-  const back = await edits(again.page);
+  for (let i = 0; i < 3; ++i) await page.locator('#edit-list .link').first().click();
+  const back = await edits(page);
   assert.deepEqual(back.file.spheres, []);
   for (const { center } of inspect.spheres) assert.ok(back.spheres.some((one) => distance(one.center, center) < 0.05 * mm));
-  silent(again);
-  await again.close();
-});
-
-test('the editor fits where the window is narrow, and every control has a name', async () => {
-  for (const [width, height] of [[800, 600], [390, 844]]) {
-    const opened = await open(browser, file('rest.html'), { width, height });
-    const { page } = opened;
-    await page.locator('#tab-edit').click();
-    const wide = await page
-      .locator('body, #results, [role=tablist], #edit, #edit button, .edit-parts, .edit-buttons')
-      .evaluateAll((parts) => parts.filter((part) => part.scrollWidth > part.clientWidth + 1).map((part) => part.id || part.className));
-    assert.deepEqual(wide, [], `at ${width} x ${height}`);
-    const nameless = await page.locator('#edit :is(button, input, select)').evaluateAll((all) => all.filter((e) => !(e.ariaLabel || e.labels?.[0]?.textContent || e.textContent)).length);
-    assert.equal(nameless, 0);
-    silent(opened);
-    await opened.close();
-  }
+  silent(rest);
 });

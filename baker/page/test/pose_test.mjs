@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { before, test } from 'node:test';
 import { launch, open, silent } from './browser.mjs';
 
 const { SPHERECHAIN_TOOL: tool, SPHERECHAIN_PAGE: template, SPHERECHAIN_HUMAN: human, SPHERECHAIN_HUESITOS: huesitos } = process.env;
@@ -22,16 +22,15 @@ const made = (asset, source, words) => {
   return { asset, source, page };
 };
 
-let browser;
+let session; // one page after another
 let man; // with the automatic rig
 let bones; // with a skeleton of its own
 before(async () => {
   man = made(file('human.sphc'), human, motion);
   run('bake', huesitos, '-o', file('huesitos.sphc'));
   bones = made(file('huesitos.sphc'), huesitos, ['--frames', '4']);
-  browser = await launch(chromium);
+  session = await open(await launch(chromium), man.page, SIZE);
 });
-after(() => browser?.close());
 
 const shown = (page) => page.evaluate(() => spherechainViewer.contacts());
 const poseOf = async (page) => (await page.evaluate(() => spherechainViewer.posing.file())).poses[0];
@@ -50,13 +49,20 @@ async function drag(page, from, to) {
 }
 const apart = ([a, b], [c, d]) => Math.hypot(a - c, b - d);
 
-async function opened(of) {
-  const session = await open(browser, of.page, SIZE);
-  const { page } = session;
+// Begins to pose the character in the frame shown.
+async function posing(page) {
   await page.keyboard.press('j');
   if (hasRuntime) await page.waitForFunction(() => spherechainViewer.posing.isLive());
   await drawn(page);
-  return session;
+}
+// Begins to pose a character that was posed before, as at the start.
+async function again(page) {
+  if (await page.locator('#handles').isVisible()) await page.locator('#pose').click();
+  await page.keyboard.press('0');
+  await page.evaluate(() => spherechainViewer.setFrame(0));
+  await posing(page);
+  await page.locator('#pose-reset').click();
+  await drawn(page);
 }
 
 // Saves the pose, and plays it; what the page shows and what `play` says must be the same.
@@ -87,7 +93,6 @@ async function roundTrip(page, { asset, source }) {
 }
 
 test('a frame is taken over as it is, and given back', async () => {
-  const session = await open(browser, man.page, SIZE);
   const { page } = session;
   await page.evaluate(() => spherechainViewer.setFrame(4));
   const recorded = await shown(page);
@@ -117,12 +122,11 @@ test('a frame is taken over as it is, and given back', async () => {
   assert.equal(await page.evaluate(() => spherechainViewer.frame), 4);
   assert.deepEqual(await poseOf(page), taken);
   silent(session);
-  await session.close();
 });
 
 test('a hand goes where it is dragged, what touches then is what play finds in the saved pose', withRuntime, async () => {
-  const session = await opened(man);
   const { page } = session;
+  await again(page);
   assert.deepEqual(await shown(page), []);
   const chest = await middle(page, 'chest');
   const to = [chest[0] + 10, chest[1] - 20];
@@ -147,12 +151,11 @@ test('a hand goes where it is dragged, what touches then is what play finds in t
   assert.deepEqual(await poseOf(page), saved.poses[0]);
   assert.ok(await page.locator('#pose-redo').isDisabled());
   silent(session);
-  await session.close();
 });
 
 test('an elbow turns the arm around, hips go down between the feet, the head looks aside', async () => {
-  const session = await opened(man);
   const { page } = session;
+  await again(page);
   const places = () => Promise.all(['left hand', 'left elbow', 'left foot', 'right foot', 'hips', 'head'].map((name) => middle(page, name)));
   const before = await places();
   await drag(page, before[4], [before[4][0], before[4][1] + 40]);
@@ -188,12 +191,12 @@ test('an elbow turns the arm around, hips go down between the feet, the head loo
   await page.locator('#pose-reset').click();
   assert.deepEqual(await poseOf(page), {});
   silent(session);
-  await session.close();
 });
 
 test('the gizmo turns the joint that is clicked, on a skeleton of its own, and play reads that pose', async () => {
-  const session = await opened(bones);
+  await session.show(bones.page);
   const { page } = session;
+  await posing(page);
   const taken = await poseOf(page);
   const names = await page.locator('.handle:visible').evaluateAll((all) => all.map(({ title }) => title));
   const at = await Promise.all(names.map((name) => middle(page, name)));
@@ -234,13 +237,12 @@ test('the gizmo turns the joint that is clicked, on a skeleton of its own, and p
   assert.ok(left.length < names.length && left.some(({ isSmall }) => isSmall), `${left.length} of ${names.length}`);
   left.forEach((p, i) => left.slice(0, i).forEach((q) => assert.ok((!p.isSmall && !q.isSmall) || apart(p.at, q.at) > 11.5)));
   silent(session);
-  await session.close();
 });
 
 test('a page without the runtime says so, and poses all the same', async () => {
   const html = readFileSync(man.page, 'utf8').replace(/"asset":"[^"]*",/, '');
   writeFileSync(file('no_asset.html'), html);
-  const session = await open(browser, file('no_asset.html'), SIZE);
+  await session.show(file('no_asset.html'));
   const { page } = session;
   await page.keyboard.press('j');
   assert.match(await page.locator('#posing [role=status]').innerText(), /finds no contacts/);
@@ -252,5 +254,4 @@ test('a page without the runtime says so, and poses all the same', async () => {
   assert.equal(dialog.type(), 'beforeunload');
   await dialog.accept();
   silent(session);
-  await session.close();
 });

@@ -22,7 +22,7 @@ async function make(name, entry, template, withRuntime = false) {
     target: 'es2022',
     outdir: 'out',
     write: false,
-    alias: { spherechain: withRuntime ? runtime : './src/no_runtime.js' },
+    alias: { spherechain: withRuntime ? runtime : './src/editor/no_runtime.js' },
     define: { LICENCES: JSON.stringify(licences.join('\n\n')) },
   });
   const text = (extension) => outputFiles.find(({ path }) => path.endsWith(extension)).text;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # cmake -D ROOT=<repository> -P include_rules.cmake: fails on an include that runtime/, cuda/ or a stage of the baker must
-# not have.
+# not have, and on an import that a folder of the page must not have.
 
 # The folders of the runtime and of the baker. Each may include those before it and itself.
 set(rooms base simd asset pose refit pairs triangles skin clusters contacts depth penetrations step bodies crowd)
@@ -72,6 +72,29 @@ foreach(room ${rooms})
   if(count GREATER room_size)
     message(NOTICE "runtime/src/${room} has ${count} files, more than ${room_size}")
     set(found TRUE)
+  endif()
+endforeach()
+
+# The folders of the page. Each may import from those before it and itself. Files beside the folders put them together.
+set(rooms base model scene panels editor)
+file(GLOB_RECURSE page_sources ${ROOT}/baker/page/web/src/*.js)
+foreach(source ${page_sources})
+  file(RELATIVE_PATH path ${ROOT}/baker/page/web/src ${source})
+  string(REGEX REPLACE "/.*" "" room ${path})
+  if(path MATCHES "/" AND NOT room STREQUAL "report")
+    list(FIND rooms ${room} own)
+    if(own EQUAL -1)
+      message(FATAL_ERROR "${room} is missing in the list of rooms of include_rules.cmake")
+    endif()
+    file(STRINGS ${source} lines REGEX "^(import|export).*'\\.\\./")
+    foreach(line IN LISTS lines)
+      string(REGEX REPLACE "^.*'\\.\\./([^']*)'.*$" "\\1" imported "${line}")
+      string(REGEX REPLACE "/.*" "" other ${imported})
+      list(FIND rooms ${other} place)
+      if(place EQUAL -1 OR place GREATER own)
+        refuse(${source} ${imported})
+      endif()
+    endforeach()
   endif()
 endforeach()
 

@@ -1,5 +1,5 @@
-import { h } from './dom.js';
-import { readModel } from './model.js';
+import { h } from './base/dom.js';
+import { readModel } from './model/model.js';
 import { start } from './viewer.js';
 
 const data = JSON.parse(document.getElementById('spherechain-data').textContent);

@@ -1,9 +1,9 @@
 import 'uplot/dist/uPlot.min.css';
 import '../style.css';
 import './clip.css';
-import { h } from '../dom.js';
-import { readModel } from '../model.js';
-import { decodePictures } from '../pictures.js';
+import { h } from '../base/dom.js';
+import { readModel } from '../model/model.js';
+import { decodePictures } from '../model/pictures.js';
 import { start } from '../viewer.js';
 import { eventKeys, fillEvents } from './events_panel.js';
 import { fillHeat } from './heat_panel.js';

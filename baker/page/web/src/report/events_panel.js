@@ -1,4 +1,4 @@
-import { h } from '../dom.js';
+import { h } from '../base/dom.js';
 import { clipLink, readLink } from './links.js';
 import { isAccepted, isFault, onMarks, toggleAccepted } from './marks.js';
 

@@ -1,5 +1,5 @@
-import { h } from '../dom.js';
-import { decode } from '../frame_lists.js';
+import { h } from '../base/dom.js';
+import { decode } from '../model/frame_lists.js';
 import { spheresSection } from './events_panel.js';
 import { clipLink } from './links.js';
 import { isFault } from './marks.js';

@@ -1,7 +1,7 @@
 import '../style.css';
 import './library.css';
-import { css, fitCanvas, h } from '../dom.js';
-import { plural } from '../format.js';
+import { css, fitCanvas, h } from '../base/dom.js';
+import { plural } from '../base/format.js';
 import { characterLink, clipLink } from './links.js';
 import { baseline, download, isAccepted, isFault, onMarks } from './marks.js';
 import { followTheme } from './theme.js';

@@ -1,5 +1,5 @@
-import { h } from './dom.js';
-import { withoutCommonStart } from './format.js';
+import { h } from '../base/dom.js';
+import { withoutCommonStart } from '../base/format.js';
 
 // The clip that plays, and where there are several the list to choose from.
 export function fillClips(box, store, model) {

@@ -1,5 +1,5 @@
 import { Contacts, MEASURES } from './contacts.js';
-import { frameNumber } from './format.js';
+import { frameNumber } from '../base/format.js';
 import { decode, pairLists } from './frame_lists.js';
 
 // The page's data (see ../README.md) as the other modules use it. Lengths are in the source's units.

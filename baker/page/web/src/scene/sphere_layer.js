@@ -1,4 +1,5 @@
 import * as THREE from 'three';
+import { mergeVertices } from 'three/addons/utils/BufferGeometryUtils.js';
 
 // The spheres: shaded, see-through, drawn from back to front; then their depth, so that skin behind them stays behind.
 
@@ -47,7 +48,8 @@ export class SphereLayer {
     this.count = count;
     this.items = Array.from({ length: count }, () => ({ sphere: [0, 0, 0, 0], colour: new THREE.Color(), alpha: 0, rim: 0 }));
     const geometry = new THREE.InstancedBufferGeometry();
-    const ball = new THREE.SphereGeometry(1, 32, 18);
+    // Triangles of one size: as round as meridians and parallels of twice as many triangles, which crowd at the poles.
+    const ball = mergeVertices(new THREE.IcosahedronGeometry(1, 4).deleteAttribute('normal').deleteAttribute('uv'));
     geometry.setIndex(ball.index);
     geometry.setAttribute('position', ball.attributes.position);
     const attribute = (name, size) => {

@@ -1,5 +1,5 @@
-import { chainColour, CONTACT, FALSE_ALARM, POINTED } from './palette.js';
-import { css, fitCanvas } from './dom.js';
+import { chainColour, CONTACT, FALSE_ALARM, POINTED } from '../base/palette.js';
+import { css, fitCanvas } from '../base/dom.js';
 
 // Two-dimensional drawing over the view: chains, pivots, numbers. A name that would cover another is left out.
 

@@ -1,7 +1,7 @@
 // The runtime in the page: what touches in a pose that no frame has.
 import { load } from 'spherechain';
-import { isFault, keyOf } from './contacts.js';
-import { decode } from './frame_lists.js';
+import { isFault, keyOf } from '../model/contacts.js';
+import { decode } from '../model/frame_lists.js';
 
 const KINDS = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration']; // the runtime's words for CLASSES of contacts.js
 

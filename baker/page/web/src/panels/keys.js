@@ -1,4 +1,4 @@
-import { h } from './dom.js';
+import { h } from '../base/dom.js';
 
 // Keyboard shortcuts, and the page that lists them. `listed`: labels and texts of keys that another part of the page binds.
 

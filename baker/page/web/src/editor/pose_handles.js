@@ -1,6 +1,6 @@
 import { Object3D, Quaternion, Vector3 } from 'three';
 import { TransformControls } from 'three/addons/controls/TransformControls.js';
-import { h } from './dom.js';
+import { h } from '../base/dom.js';
 import { dragPlane } from './drag_plane.js';
 
 // Handles of a character that is posed by hand, over the picture: of the ends of limbs, elbows and knees, head and hips, and a

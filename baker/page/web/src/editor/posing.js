@@ -1,10 +1,10 @@
 import './posing.css';
-import { commandBlock, h } from './dom.js';
+import { commandBlock, h } from '../base/dom.js';
 import { History, stepOf } from './history.js';
 import { hasRuntime, openLive } from './live.js';
 import { addHandles } from './pose_handles.js';
 import { Poser } from './poser.js';
-import { Refit } from './refit.js';
+import { Refit } from '../model/refit.js';
 
 // Posing by hand. It starts from the frame that is shown, and takes that frame's place until another frame is shown: its
 // bones are written over the frame's, and what touches is found anew after each movement.

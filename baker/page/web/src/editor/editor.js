@@ -1,6 +1,6 @@
 import './editor.css';
 import { Vector3 } from 'three';
-import { h } from './dom.js';
+import { h } from '../base/dom.js';
 import { fillEditorPanel } from './editor_panel.js';
 import { addBeside, fileOf, forget, ignore, mayRemove, place, placeNow, placeOf, pointOf, remove, restore, startState, unignore } from './editor_state.js';
 import { createEditorView } from './editor_view.js';

@@ -1,5 +1,5 @@
-import { h } from './dom.js';
-import { chainColour, regionColour } from './palette.js';
+import { h } from '../base/dom.js';
+import { chainColour, regionColour } from '../base/palette.js';
 import { legend } from './sphere_panel.js';
 
 // Controls that choose what is shown. Sets (chains, levels, sides) mark spheres: if any is chosen, all other spheres fade.

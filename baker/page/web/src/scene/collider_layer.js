@@ -1,5 +1,5 @@
 import * as THREE from 'three';
-import { COLLIDER, CONTACT } from './palette.js';
+import { COLLIDER, CONTACT } from '../base/palette.js';
 
 // Colliders as an engine would have them: each body part's volumes, moved rigidly with its bone. Those of parts that overlap are
 // red.

@@ -1,5 +1,5 @@
-import { h } from './dom.js';
-import { number, percent, plural } from './format.js';
+import { h } from '../base/dom.js';
+import { number, percent, plural } from '../base/format.js';
 import { sphereName } from './sphere_panel.js';
 
 // Results of `validate`: how much of what truly intersects is reported, and the worst misses. A click on a miss goes there.

@@ -1,5 +1,5 @@
-import { h } from './dom.js';
-import { length, number, percent, plural } from './format.js';
+import { h } from '../base/dom.js';
+import { length, number, percent, plural } from '../base/format.js';
 
 // Where the asset comes from and what its bake reached: the figures people ask for first; with the method the whole report.
 
@@ -55,8 +55,12 @@ function valueOf(key, value) {
   return text(isScalar(value) || Array.isArray(value) ? value : JSON.stringify(value));
 }
 
+// Only the paper's experiments turn these (docs/paper.md).
+const OF_THE_PAPER = ['rays', 'delta', 'limb_step', 'spheres_per_level', 'refit', 'pivots'];
+const shownSettings = (settings) => Object.fromEntries(Object.entries(settings ?? {}).filter(([key]) => !OF_THE_PAPER.includes(key)));
+
 function provenance({ source, writer, format_version: version, settings, settings_sha256: settingsHash }) {
-  const chosen = Object.entries(settings ?? {}).map(([key, value]) => [words(key), valueOf(key, value)]);
+  const chosen = Object.entries(shownSettings(settings)).map(([key, value]) => [words(key), valueOf(key, value)]);
   return [
     section(
       'Provenance',
@@ -118,7 +122,7 @@ function wholeReport(report) {
   const sections = Object.entries(report).filter(([, value]) => !isScalar(value));
   return section(
     'The whole report',
-    sections.map(([key, value]) => h('details', {}, h('summary', {}, words(key)), tree(value))),
+    sections.map(([key, value]) => h('details', {}, h('summary', {}, words(key)), tree(key === 'settings' ? shownSettings(value) : value))),
     'method',
   );
 }

@@ -1,7 +1,7 @@
-import { css, fitCanvas, h } from './dom.js';
-import { isFault } from './contacts.js';
-import { plural, withoutCommonStart } from './format.js';
-import { CONTACT, FALSE_ALARM } from './palette.js';
+import { css, fitCanvas, h } from '../base/dom.js';
+import { isFault } from '../model/contacts.js';
+import { plural, withoutCommonStart } from '../base/format.js';
+import { CONTACT, FALSE_ALARM } from '../base/palette.js';
 
 // Play, step, scrub. A frame with a fault has a bar, as high as it is deep; one in which the skin only folds or touches has a
 // tick. With spheres shown, a frame with false alarms has a mark below. Clips begin at a line with their name; frames are numbered in their clip.

@@ -1,6 +1,6 @@
 import uPlot from 'uplot';
-import { css, h } from './dom.js';
-import { number } from './format.js';
+import { css, h } from '../base/dom.js';
+import { number } from '../base/format.js';
 
 // How many pairs of spheres touch in each frame, at both radii. The line is the frame shown; a click goes to a frame.
 

@@ -1,6 +1,6 @@
-import { h } from './dom.js';
-import { CLASSES, className, isFault, isHidden, MEANINGS, millimetres } from './contacts.js';
-import { plural } from './format.js';
+import { h } from '../base/dom.js';
+import { CLASSES, className, isFault, isHidden, MEANINGS, millimetres } from '../model/contacts.js';
+import { plural } from '../base/format.js';
 
 // The frame's contacts by body parts, and below those of the whole clip; a click goes there.
 

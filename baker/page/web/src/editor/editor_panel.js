@@ -1,7 +1,7 @@
-import { commandBlock, h } from './dom.js';
+import { commandBlock, h } from '../base/dom.js';
 import { distance, fileOf, isEdited, isIgnored, kindOf, mayRemove, placeNow } from './editor_state.js';
-import { number, plural } from './format.js';
-import { EDITED } from './palette.js';
+import { number, plural } from '../base/format.js';
+import { EDITED } from '../base/palette.js';
 
 // The panel of the editor: the picked sphere, the parts to ignore, the edits so far, and the file.
 

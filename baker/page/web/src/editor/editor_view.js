@@ -1,11 +1,11 @@
 import * as THREE from 'three';
 import { TransformControls } from 'three/addons/controls/TransformControls.js';
-import { css, fitCanvas } from './dom.js';
+import { css, fitCanvas } from '../base/dom.js';
 import { dragPlane } from './drag_plane.js';
 import { isEdited, kindOf, placeNow, placeOf, pointOf } from './editor_state.js';
-import { Names } from './overlay.js';
-import { EDITED, GHOST, POINTED, SPHERE } from './palette.js';
-import { SphereLayer } from './sphere_layer.js';
+import { Names } from '../scene/overlay.js';
+import { EDITED, GHOST, POINTED, SPHERE } from '../base/palette.js';
+import { SphereLayer } from '../scene/sphere_layer.js';
 
 // The spheres that are edited, in the rest pose: a click picks one, it is dragged itself or by its arrows.
 

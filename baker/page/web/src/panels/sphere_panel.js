@@ -1,6 +1,6 @@
-import { h } from './dom.js';
-import { length, number, percent, plural } from './format.js';
-import { CONTACT, FALSE_ALARM, regionColour } from './palette.js';
+import { h } from '../base/dom.js';
+import { length, number, percent, plural } from '../base/format.js';
+import { CONTACT, FALSE_ALARM, regionColour } from '../base/palette.js';
 
 // The method's spheres: which touch, and which of these are false alarms; and the figures of the one that is pointed at.
 

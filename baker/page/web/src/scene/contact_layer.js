@@ -1,6 +1,6 @@
 import * as THREE from 'three';
-import { isFault } from './contacts.js';
-import { CONTACT } from './palette.js';
+import { isFault } from '../model/contacts.js';
+import { CONTACT } from '../base/palette.js';
 import { LIGHT } from './skin_layer.js';
 
 // The triangles that touch, over the skin: striped where they are seen, faint where something hides them, and with edges, so

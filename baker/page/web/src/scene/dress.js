@@ -1,5 +1,5 @@
-import { css } from './dom.js';
-import { CLAY, CONTACT, FALSE_ALARM, GHOST, POINTED, regionColour, SPHERE, tone } from './palette.js';
+import { css } from '../base/dom.js';
+import { CLAY, CONTACT, FALSE_ALARM, GHOST, POINTED, regionColour, SPHERE, tone } from '../base/palette.js';
 import { looks } from './skin_layer.js';
 
 function dressSkin(model, state, skinLayer) {
