@@ -52,6 +52,7 @@ ordered_json penetrations_json(const AnimatedAsset& animated, const std::vector<
                         {"triangle", at.triangle},
                         {"weights", at.weights}};
   };
+  const auto known = [](double value) { return value >= 0 ? ordered_json(value) : ordered_json(); };
   ordered_json out = ordered_json::array();
   for (const Penetration& found : penetrations) {
     const double ml = std::pow(mm / 10, 3) * double{found.measures.volume};
@@ -59,9 +60,14 @@ ordered_json penetrations_json(const AnimatedAsset& animated, const std::vector<
                    {"class", sc_penetration_class_name(found.kind)},
                    {"depth_mm", mm * double{found.measures.depth}},
                    {"direction", {found.direction.x, found.direction.y, found.direction.z}},
-                   {"volume_ml", ml >= 0 ? ordered_json(ml) : ordered_json()},
+                   {"volume_ml", known(ml)},
                    {"visible", found.measures.visible},
                    {"contour_mm", mm * double{found.measures.contour_length}},
+                   {"thickness_mm", known(mm * double{found.measures.thickness})},
+                   {"swallowed", known(double{found.measures.swallowed})},
+                   {"touching", found.measures.touching},
+                   {"facing", found.measures.facing},
+                   {"rest_distance", found.measures.rest_distance},
                    {"deepest", {point(found.deepest), point(found.deepest_other)}}});
   }
   return out;

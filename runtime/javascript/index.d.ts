@@ -197,7 +197,7 @@ export interface Penetration {
   kind: PenetrationClass;
   /** Unit length. `part`, moved by distance * direction, no longer intersects `other`. */
   direction: Float32Array;
-  /** Measures.depth, or up to a quarter more where `previous` keeps the direction. */
+  /** Measures.depth. With `previous`, up to 1.5 times as much where the direction of the last frame is kept. */
   distance: number;
   /** Centre of the line in which the parts cross, and a box around that line. For the ground: a box of the skin below it, and its centre. */
   centre: Float32Array;

@@ -26,9 +26,9 @@ typedef struct sc_part {
   sc_side side;
   int32_t bone;     /* the bone that it follows; -1 where no bone moves it */
   int32_t parent;   /* the part that it hangs on; -1: none */
-  int32_t mobility; /* of two parts that intersect the one with more goes into the other: from a hand's, over forearm,
-                       upper arm, foot, shin, thigh and head, down to the trunk's 0; others have one more than the part
-                       that they hang on */
+  int32_t mobility; /* if two parts intersect, the one with the higher number goes into the other. From high to low:
+                       hand, forearm, upper arm, foot, shin, thigh, head, and the trunk's 0. Any other part has one more
+                       than its parent */
 } sc_part;
 
 /* A sphere at rest. Lengths in source units. */
@@ -84,7 +84,7 @@ SPHERECHAIN_API sc_status sc_asset_open(sc_asset* asset, uint32_t abi, const voi
                                         size_t message_size) SC_NOEXCEPT;
 SPHERECHAIN_API int sc_asset_is_open(const sc_asset* asset) SC_NOEXCEPT;
 
-/* The functions below take an open asset. Of an index that does not exist they return zeros. */
+/* The functions below take an open asset. They return zeros for an index that does not exist. */
 SPHERECHAIN_API sc_asset_info sc_asset_get_info(const sc_asset* asset) SC_NOEXCEPT;
 SPHERECHAIN_API sc_rest_sphere sc_asset_sphere(const sc_asset* asset, size_t index) SC_NOEXCEPT;
 /* The bones in the order in which a pose has their matrices. A glTF skin: its `joints`; a joint that several skins bind

@@ -32,7 +32,7 @@ SC_ENUM(sc_detail){
     SC_DETAIL_FULL = 1,
 };
 
-/* The options of a question. All zeros, or a null pointer, ask what `play` and `check` ask. */
+/* The options of a question. Zeros, or a null pointer, give the faults that `play` and `check` report. */
 typedef struct sc_query {
   sc_scope scope SC_ZERO;
   sc_detail detail SC_ZERO;
@@ -44,7 +44,7 @@ typedef struct sc_query {
   const uint64_t* ignored_parts_of_other SC_ZERO;
   /* Pairs of body parts that are asked about, in questions about contacts and penetrations: bit a n + b is of part a
    * and part b of the other body, which has n parts, or of the same one. m parts of the body make (m n + 63) / 64
-   * words. Null: all pairs. Of one body either order of the two will do. */
+   * words. Null: all pairs. In questions about one body, either order of the two will do. */
   const uint64_t* part_pairs SC_ZERO;
   const sc_rule* rule SC_ZERO; /* null: sc_default_rule() */
   uint32_t classes SC_ZERO;    /* bit k: penetrations of class k are listed; 0: faults alone */

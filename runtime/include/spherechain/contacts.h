@@ -23,8 +23,8 @@ typedef struct sc_triangle_contact {
   uint32_t triangle_a, triangle_b; /* the source's numbers, triangle_a < triangle_b */
   uint32_t sphere_a, sphere_b;
   uint32_t part_a, part_b;
-  sc_vec3 from, to; /* the segment in which they cross; of triangles in one plane the longest piece of an edge inside
-                       the other triangle. Rounded */
+  sc_vec3 from, to; /* the segment in which they cross, rounded. If they lie in one plane: the longest piece of an edge
+                       inside the other triangle */
 } sc_triangle_contact;
 
 #define SC_FLOOR 0xFFFFFFFFu /* in place of a body part and of a triangle: the ground */
@@ -38,13 +38,13 @@ typedef struct sc_skin_point {
 
 /* Two body parts that intersect. Lengths in the pose's units. */
 typedef struct sc_penetration {
-  /* `part` goes into `other`. Of one body's parts it is the more mobile (sc_part.mobility), of two alike the smaller,
-   * or a part that meets itself. Of two bodies `part` is of the first. */
+  /* `part` goes into `other`. Within one body it is the more mobile of the two (sc_part.mobility), or the smaller if
+   * both are alike; a part may meet itself. Between two bodies, `part` belongs to the first. */
   uint32_t part, other;
   uint32_t joint; /* moves `part`, in the order of the model's joints; SC_NO_JOINT where none does */
   sc_penetration_class kind;
-  /* In the pose's space, of unit length. `part`, moved by distance * direction, no longer intersects `other`. Of a part
-   * that meets itself, one side of the triangles that intersect moves. */
+  /* In the pose's space, of unit length. `part`, moved by distance * direction, no longer intersects `other`. If a part
+   * meets itself, one side of the triangles that intersect moves. */
   sc_vec3 direction;
   float distance;    /* measures.depth; up to 1.5 times as much where `previous` keeps the direction */
   sc_vec3 centre;    /* of the line where the parts cross; of the ground: of the box */

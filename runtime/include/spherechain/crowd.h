@@ -58,10 +58,10 @@ typedef struct sc_scene_body {
   uint32_t layer SC_ZERO; /* below 32 */
 } sc_scene_body;
 
-/* Which of hundreds of characters and props may meet? All pairs of bodies with a sphere each that overlap; where one of
- * the two has no spheres, whose boxes touch. Between boxes of sc_get_bounds() no pair whose skins meet is missing;
- * those with a transform are larger by a millionth of their distance from the origin. Spheres are an alarm; those with
- * a negative radius touch nothing.
+/* Which of hundreds of characters and props may meet? The job lists two bodies if a sphere of one overlaps a sphere of
+ * the other. If one of them has no spheres, it lists them if their boxes touch. Between boxes of sc_get_bounds() no
+ * pair whose skins meet is missing; those with a transform are larger by a millionth of their distance from the origin.
+ * Spheres are an alarm; those with a negative radius touch nothing.
  *
  * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
 typedef struct sc_scene_job {

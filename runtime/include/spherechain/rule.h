@@ -9,7 +9,7 @@
 SC_ENUM(sc_penetration_class){
     SC_CLASS_REST = 0,        /* the two spots touch in the rest pose, too */
     SC_CLASS_SHELL = 1,       /* another layer of the same place (a garment on the body), or most of it is hidden */
-    SC_CLASS_TOUCH = 2,       /* shallow; or no fold, and only a small share of the smaller part is inside */
+    SC_CLASS_TOUCH = 2,       /* shallow; or up to touch_times deeper, no fold, and little is swallowed */
     SC_CLASS_FOLD = 3,        /* neighbours on the body meet near their joint: an elbow, a groin */
     SC_CLASS_DEEP_FOLD = 4,   /* a fold within one piece of skin that is deep: a fault */
     SC_CLASS_PENETRATION = 5, /* everything else: a fault */
@@ -25,20 +25,21 @@ SC_ENUM(sc_relation){
 };
 
 /* The measurements of two body parts that intersect. The class follows from them alone, so you can store them and
- * classify them again. Measurements of a quick query (SC_DETAIL_QUICK) fit only the rule of that query. Those of
- * SC_DETAIL_FULL fit any rule if `swallowed` is known, or if the rule sets touch_depth. */
+ * classify them again; in the ground it follows from the depth alone. A quick query (SC_DETAIL_QUICK) measures only as
+ * much as its own rule needs. The measurements of SC_DETAIL_FULL fit any rule if `swallowed` is known, or if the rule
+ * sets touch_depth. */
 typedef struct sc_measures {
   float depth;          /* > 0: the way out; the pose's units */
   float volume;         /* of the one part inside the other; negative: not known. The pose's units */
   float contour_length; /* of the line where the parts cross; the pose's units */
   float visible;        /* 0 to 1: the share of that line that can be seen from outside; 1 where it was not looked at */
-  float touching;       /* 0 to 1: the share of that line that touches at rest */
+  float touching;       /* 0 to 1: of the triangle pairs that intersect, the share that touches at rest */
   float facing;         /* -1 to 1: 1 where the sides lie flat on each other */
   float rest_distance;  /* between the two spots at rest, a share of the height; infinite of two bodies */
   float thickness;      /* of the thinner part, there, in the pose's units; negative: not known */
-  float swallowed;      /* depth / thickness * visible length / side of a square like the smaller part; negative: not
-                           known, for the class does not depend on it */
-  float height, metre;  /* how long the character's height and a metre are in the pose's units */
+  float swallowed; /* depth / thickness * seen length / side of a square with the area of the smaller part; negative:
+                      not known, for the class does not depend on it */
+  float height, metre; /* how long the character's height and a metre are in the pose's units */
   sc_relation relation;
   int32_t is_one_piece; /* 1: the two spots are of one piece of skin */
 } sc_measures;
@@ -54,8 +55,8 @@ typedef struct sc_rule {
                                                touch_min and not more than touch_max */
   float touch_times; /* an intersection up to so many times deeper is still a touch if it is no fold and its
                         sc_measures.swallowed is below `swallowed` */
-  float swallowed;   /* see touch_times */
-  float at_rest;     /* rest: at least this share of the line touches at rest */
+  float swallowed;   /* touch: sc_measures.swallowed is below this, see touch_times */
+  float at_rest;     /* rest: at least this share of the triangle pairs touches at rest */
   float hidden;      /* shell: less than this share of the line is visible */
   float shell;       /* shell: the two spots are on two pieces of skin, and closer than this at rest */
   float fold;        /* fold: the two spots are on parts that are near each other, and closer than this at rest */

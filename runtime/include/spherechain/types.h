@@ -52,7 +52,7 @@ typedef struct sc_pair {
 
 /* Which of a sphere's two radii an operation uses. */
 SC_ENUM(sc_radius){
-    SC_RADIUS_DETECT = 0, /* the product's: reaches what the sphere stands for */
+    SC_RADIUS_DETECT = 0, /* the default: reaches most of the skin that the sphere stands for */
     SC_RADIUS_FIT = 1,    /* the paper's */
 };
 

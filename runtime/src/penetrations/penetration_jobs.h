@@ -34,8 +34,8 @@ struct MeasureJob {
 // have the asset's scale.
 //
 // Depth is the shortest of the ways along several directions; a straight way may exist that is a little shorter. With
-// the last frame's results as `previous` the direction of a fault stays while the way is at most a quarter longer than
-// the shortest, so that it does not flicker. Depth and class do not depend on it.
+// the last frame's results as `previous`, a fault keeps its direction while that way is at most 1.5 times the shortest,
+// so that arrows do not flicker. Depth and class do not depend on it.
 struct PenetrationJob : MeasureJob {
   const Asset* asset = nullptr;  // open, with triangles
   Pose pose;

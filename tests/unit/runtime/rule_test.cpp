@@ -45,6 +45,12 @@ TEST_CASE("a class changes at its limit, and what is measured beyond that change
       {&Measures::depth, 0.0033F, 0.0034F, SC_CLASS_TOUCH, SC_CLASS_PENETRATION},  // 0.19 % of the height, above 3 mm
       {&Measures::rest_distance, 0.054F, 0.056F, SC_CLASS_FOLD, SC_CLASS_PENETRATION},
   };
+  Measures thin = hand_in_thigh();
+  thin.depth = 0.02F;
+  thin.swallowed = 0.249F;
+  CHECK(classify(thin) == SC_CLASS_TOUCH);
+  thin.swallowed = 0.251F;
+  CHECK(classify(thin) == SC_CLASS_PENETRATION);
   for (const Row& row : rows) {
     Measures of = hand_in_thigh();
     of.*row.measure = row.below;

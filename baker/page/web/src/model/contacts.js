@@ -4,7 +4,7 @@ export const CLASSES = ['as at rest', 'shell', 'touch', 'fold', 'deep fold', 'pe
 export const MEANINGS = [
   'The same spots are this near in the rest pose, too.',
   'Another layer of the same place (clothes), or hidden inside.',
-  'Too little of it to be seen.',
+  'Shallow, or little of the smaller part goes in.',
   'Neighbours of a joint that bends, or spots that lie close at rest.',
   'A joint whose skin is far inside itself. A fault.',
   'One part is inside another. A fault. A part that is wholly inside another crosses no skin: it is not found.',
