@@ -9,7 +9,7 @@ namespace Spherechain
 {
     public enum Radius : int  // sc_radius
     {
-        /// <summary>the product's: reaches what the sphere stands for</summary>
+        /// <summary>the default: reaches most of the skin that the sphere stands for</summary>
         Detect = 0,
         /// <summary>the paper's</summary>
         Fit = 1,
@@ -144,7 +144,7 @@ namespace Spherechain
         Rest = 0,
         /// <summary>another layer of the same place (a garment on the body), or most of it is hidden</summary>
         Shell = 1,
-        /// <summary>shallow; or no fold, and only a small share of the smaller part is inside</summary>
+        /// <summary>shallow; or up to touch_times deeper, no fold, and little is swallowed</summary>
         Touch = 2,
         /// <summary>neighbours on the body meet near their joint: an elbow, a groin</summary>
         Fold = 3,
@@ -251,7 +251,7 @@ namespace Spherechain
         public float ContourLength;
         /// <summary>0 to 1: the share of that line that can be seen from outside; 1 where it was not looked at</summary>
         public float Visible;
-        /// <summary>0 to 1: the share of that line that touches at rest</summary>
+        /// <summary>0 to 1: of the triangle pairs that intersect, the share that touches at rest</summary>
         public float Touching;
         /// <summary>-1 to 1: 1 where the sides lie flat on each other</summary>
         public float Facing;
@@ -259,7 +259,7 @@ namespace Spherechain
         public float RestDistance;
         /// <summary>of the thinner part, there, in the pose's units; negative: not known</summary>
         public float Thickness;
-        /// <summary>depth / thickness * visible length / side of a square like the smaller part; negative: not known, for the class does not depend on it</summary>
+        /// <summary>depth / thickness * seen length / side of a square with the area of the smaller part; negative: not known, for the class does not depend on it</summary>
         public float Swallowed;
         /// <summary>how long the character's height and a metre are in the pose's units</summary>
         public float Height, Metre;
@@ -278,9 +278,9 @@ namespace Spherechain
         public float TouchMetres, TouchMin, TouchMax;
         /// <summary>an intersection up to so many times deeper is still a touch if it is no fold and its sc_measures.swallowed is below `swallowed`</summary>
         public float TouchTimes;
-        /// <summary>see touch_times</summary>
+        /// <summary>touch: sc_measures.swallowed is below this, see touch_times</summary>
         public float Swallowed;
-        /// <summary>rest: at least this share of the line touches at rest</summary>
+        /// <summary>rest: at least this share of the triangle pairs touches at rest</summary>
         public float AtRest;
         /// <summary>shell: less than this share of the line is visible</summary>
         public float Hidden;
@@ -312,7 +312,7 @@ namespace Spherechain
         public uint TriangleA, TriangleB;
         public uint SphereA, SphereB;
         public uint PartA, PartB;
-        /// <summary>the segment in which they cross; of triangles in one plane the longest piece of an edge inside the other triangle. Rounded</summary>
+        /// <summary>the segment in which they cross, rounded. If they lie in one plane: the longest piece of an edge inside the other triangle</summary>
         public Vec3 From, To;
     }
 
@@ -419,7 +419,7 @@ namespace Spherechain
             public int Bone;
             /// <summary>the part that it hangs on; -1: none</summary>
             public int Parent;
-            /// <summary>of two parts that intersect the one with more goes into the other: from a hand's, over forearm, upper arm, foot, shin, thigh and head, down to the trunk's 0; others have one more than the part that they hang on</summary>
+            /// <summary>if two parts intersect, the one with the higher number goes into the other. From high to low: hand, forearm, upper arm, foot, shin, thigh, head, and the trunk's 0. Any other part has one more than its parent</summary>
             public int Mobility;
         }
 
