@@ -159,8 +159,7 @@ class Fixer {
       out_.is_in_baseline |= is_it;
       if (is_it && event.state == EventState::kAccepted) accepted.push_back(&event);
     }
-    const auto leave = [&](const MendedEvent& mended) {
-      const Event event = event_of(mended);
+    const auto leave = [&](const Event& event) {
       return !is_asked_for(event) || job_.config.rules.leaves_out(event.parts) ||
              !job_.config.rules.excuse(event).empty() ||
              std::any_of(accepted.begin(), accepted.end(), [&](const KnownEvent* known) {
@@ -170,7 +169,7 @@ class Fixer {
     MendedClip mended{clip.name, mend_clip(*animated_, roles, clip, job_.mend, leave,
                                            [&](const std::string& doing) { report_(clip.name + ": " + doing); })};
     mended.others = static_cast<int>(
-        std::erase_if(mended.mend.events, [&](const MendedEvent& event) { return !is_asked_for(event_of(event)); }));
+        std::erase_if(mended.mend.events, [&](const MendedEvent& event) { return !is_asked_for(event.before); }));
     std::vector<Channel> turned;
     if (!mended.mend.is_still()) {
       const TurnedClip with_turns(rig(), *clip.clip, clip.fps, clip.own_count, mended.mend.joints);
@@ -182,16 +181,6 @@ class Fixer {
     out_.before.push_back(*clip.clip);
     out_.after.push_back(with_rotations(*clip.clip, turned));
     return turned;
-  }
-
-  Event event_of(const MendedEvent& mended) const {
-    Event event;
-    event.parts = {out_.parts[mended.part].name, out_.parts[mended.other].name};
-    event.kind = mended.kind;
-    event.from = mended.from;
-    event.to = mended.to;
-    event.depth_mm = mended.depth_before;
-    return event;
   }
 
   bool is_asked_for(const Event& event) const {
