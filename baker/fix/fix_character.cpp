@@ -53,9 +53,9 @@ class Fixer {
     out_.asset.assign(reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size());
     animated_.emplace(OpenAsset(out_.asset, job.input), job.input, job.input, MotionChoice{{}, job.clip, {}},
                       FrameChoice{0, 0});
-    out_.parts = body_parts_of(animated_->asset()).parts;
+    parts_ = body_parts_of(animated_->asset()).parts;
     const auto is_part = [&](const std::string& name) {
-      return std::any_of(out_.parts.begin(), out_.parts.end(), [&](const BodyPart& part) { return part.name == name; });
+      return std::any_of(parts_.begin(), parts_.end(), [&](const BodyPart& part) { return part.name == name; });
     };
     for (const std::string& name : job.config.rules.named_parts()) {
       if (!is_part(name)) out_.unused_parts.push_back(name);
@@ -93,7 +93,7 @@ class Fixer {
   [[noreturn]] void fail(const std::string& what) const { throw Error(ExitCode::kFile, job_.input + ": " + what); }
   [[noreturn]] void fail_part(const std::string& name) const {
     std::string all;
-    for (const BodyPart& part : out_.parts) all += (all.empty() ? "" : ", ") + part.name;
+    for (const BodyPart& part : parts_) all += (all.empty() ? "" : ", ") + part.name;
     throw Error(ExitCode::kUsage, "--parts: " + job_.input + " has no '" + name + "' (it has " + all + ")");
   }
 
@@ -193,6 +193,7 @@ class Fixer {
   const Roles& roles_;
   const std::function<void(const std::string&)>& report_;
   std::optional<AnimatedAsset> animated_;
+  std::vector<BodyPart> parts_;
   FixedCharacter out_;
 };
 
