@@ -139,7 +139,7 @@ ExitCode run_fix(const FixOptions& options) {
     if (!options.report.empty()) {
       progress.show("report");
       OwnFolder report(options.report, kKind);
-      report.write("fix.json", fix_json(fixed.clips, fixed.parts));
+      report.write("fix.json", fix_json(fixed.clips));
       pages = write_pages(options, page, fixed, report);
       report.finish();
     }
@@ -156,7 +156,7 @@ ExitCode run_fix(const FixOptions& options) {
   for (const std::string& part : fixed.unused_parts) {
     say(stderr, "spherechain: warning: {}: a rule names '{}', which this character has not\n", options.keep, part);
   }
-  say("{}{}wrote {}\n", fix_text(fixed.clips, fixed.parts), again, options.output);
+  say("{}{}wrote {}\n", fix_text(fixed.clips), again, options.output);
   if (!options.report.empty()) {
     say("wrote {}: fix.json and {} page{}\n", options.report, pages.written, pages.written == 1 ? "" : "s");
   }

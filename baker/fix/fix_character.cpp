@@ -53,9 +53,9 @@ class Fixer {
     out_.asset.assign(reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size());
     animated_.emplace(OpenAsset(out_.asset, job.input), job.input, job.input, MotionChoice{{}, job.clip, {}},
                       FrameChoice{0, 0});
-    out_.parts = body_parts_of(animated_->asset()).parts;
+    parts_ = body_parts_of(animated_->asset()).parts;
     const auto is_part = [&](const std::string& name) {
-      return std::any_of(out_.parts.begin(), out_.parts.end(), [&](const BodyPart& part) { return part.name == name; });
+      return std::any_of(parts_.begin(), parts_.end(), [&](const BodyPart& part) { return part.name == name; });
     };
     for (const std::string& name : job.config.rules.named_parts()) {
       if (!is_part(name)) out_.unused_parts.push_back(name);
@@ -93,7 +93,7 @@ class Fixer {
   [[noreturn]] void fail(const std::string& what) const { throw Error(ExitCode::kFile, job_.input + ": " + what); }
   [[noreturn]] void fail_part(const std::string& name) const {
     std::string all;
-    for (const BodyPart& part : out_.parts) all += (all.empty() ? "" : ", ") + part.name;
+    for (const BodyPart& part : parts_) all += (all.empty() ? "" : ", ") + part.name;
     throw Error(ExitCode::kUsage, "--parts: " + job_.input + " has no '" + name + "' (it has " + all + ")");
   }
 
@@ -159,8 +159,7 @@ class Fixer {
       out_.is_in_baseline |= is_it;
       if (is_it && event.state == EventState::kAccepted) accepted.push_back(&event);
     }
-    const auto leave = [&](const MendedEvent& mended) {
-      const Event event = event_of(mended);
+    const auto leave = [&](const Event& event) {
       return !is_asked_for(event) || job_.config.rules.leaves_out(event.parts) ||
              !job_.config.rules.excuse(event).empty() ||
              std::any_of(accepted.begin(), accepted.end(), [&](const KnownEvent* known) {
@@ -170,7 +169,7 @@ class Fixer {
     MendedClip mended{clip.name, mend_clip(*animated_, roles, clip, job_.mend, leave,
                                            [&](const std::string& doing) { report_(clip.name + ": " + doing); })};
     mended.others = static_cast<int>(
-        std::erase_if(mended.mend.events, [&](const MendedEvent& event) { return !is_asked_for(event_of(event)); }));
+        std::erase_if(mended.mend.events, [&](const MendedEvent& event) { return !is_asked_for(event.before); }));
     std::vector<Channel> turned;
     if (!mended.mend.is_still()) {
       const TurnedClip with_turns(rig(), *clip.clip, clip.fps, clip.own_count, mended.mend.joints);
@@ -184,16 +183,6 @@ class Fixer {
     return turned;
   }
 
-  Event event_of(const MendedEvent& mended) const {
-    Event event;
-    event.parts = {out_.parts[mended.part].name, out_.parts[mended.other].name};
-    event.kind = mended.kind;
-    event.from = mended.from;
-    event.to = mended.to;
-    event.depth_mm = mended.depth_before;
-    return event;
-  }
-
   bool is_asked_for(const Event& event) const {
     return job_.parts.empty() || std::any_of(job_.parts.begin(), job_.parts.end(), [&](const std::string& part) {
              return part == event.parts[0] || part == event.parts[1];
@@ -204,6 +193,7 @@ class Fixer {
   const Roles& roles_;
   const std::function<void(const std::string&)>& report_;
   std::optional<AnimatedAsset> animated_;
+  std::vector<BodyPart> parts_;
   FixedCharacter out_;
 };
 

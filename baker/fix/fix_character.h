@@ -28,8 +28,7 @@ struct FixJob {
 struct FixedCharacter {
   std::string bytes;  // the fixed file: the character's, or the recording's
   std::vector<MendedClip> clips;
-  std::vector<Clip> before, after;  // the same clips in full
-  std::vector<BodyPart> parts;
+  std::vector<Clip> before, after;        // the same clips in full
   std::string asset;                      // the baked character's bytes
   std::vector<std::string> unused_parts;  // named by a rule, but missing in the character
   bool is_in_baseline = false;            // the baseline has events of these clips

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "baker/report/json_text.h"
 #include "baker/write/version.h"
@@ -24,13 +23,14 @@ std::vector<double> turns_of(const MendedClip& clip) {
   std::vector<char> is_mended(frames, 0);
   for (const MendedEvent& event : clip.mend.events) {
     if (event.outcome != MendOutcome::kCleared && event.outcome != MendOutcome::kReduced) continue;
-    for (int f = event.from; f <= event.to; ++f) is_mended[static_cast<std::size_t>(f)] = 1;
+    const auto from = static_cast<std::size_t>(event.before.from), to = static_cast<std::size_t>(event.before.to);
+    for (std::size_t f = from; f <= to; ++f) is_mended[f] = 1;
   }
   for (std::size_t f = 0; f < frames; ++f) {
     if (is_mended[f] == 0) continue;
     double most = 0;
     for (std::size_t j = 0; j < joints; ++j) most = std::max(most, clip.mend.turns[f * joints + j].norm());
-    out.push_back(most * 180 / std::numbers::pi);
+    out.push_back(to_degrees(most));
   }
   std::sort(out.begin(), out.end());
   return out;
@@ -40,7 +40,7 @@ std::vector<double> turns_of(const MendedClip& clip) {
 double most_of(const MendedClip& clip) {
   double most = 0;
   for (const Vec3& turn : clip.mend.turns) most = std::max(most, turn.norm());
-  return most * 180 / std::numbers::pi;
+  return to_degrees(most);
 }
 
 double quantile(const std::vector<double>& ascending, double q) {
@@ -68,14 +68,15 @@ std::string advice_on(const std::vector<MendedEvent>& events) {
   return out;
 }
 
-std::string clip_text(const MendedClip& clip, const std::vector<BodyPart>& parts) {
+std::string clip_text(const MendedClip& clip) {
   std::map<MendOutcome, int> counts;
   std::string rows;
   for (const MendedEvent& e : clip.mend.events) {
     ++counts[e.outcome];
     rows += fmt::format("  {:<34} {:>5}-{:<5} {:>6.1f} -> {:>5.1f} mm  {:>5.1f} degrees  {}\n",
-                        parts[e.part].name + ", " + parts[e.other].name, e.from, e.to, e.depth_before, e.depth_after,
-                        e.turn_degrees, outcome_name(e.outcome));
+                        e.before.parts[0] + ", " + e.before.parts[1], static_cast<int>(e.before.from),
+                        static_cast<int>(e.before.to), e.before.depth_mm, e.depth_after_mm, e.turn_degrees,
+                        outcome_name(e.outcome));
   }
   std::string out =
       fmt::format("{}: {} event{}", clip.name, clip.mend.events.size(), clip.mend.events.size() == 1 ? "" : "s");
@@ -92,18 +93,18 @@ std::string clip_text(const MendedClip& clip, const std::vector<BodyPart>& parts
 
 }  // namespace
 
-std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts) {
+std::string fix_json(const std::vector<MendedClip>& clips) {
   ordered_json out;
   out["writer"] = kWriter;
   out["clips"] = ordered_json::array();
   for (const MendedClip& clip : clips) {
     ordered_json events = ordered_json::array();
     for (const MendedEvent& e : clip.mend.events) {
-      events.push_back({{"parts", {parts[e.part].name, parts[e.other].name}},
-                        {"from", e.from},
-                        {"to", e.to},
-                        {"depth_mm_before", e.depth_before},
-                        {"depth_mm_after", e.depth_after},
+      events.push_back({{"parts", e.before.parts},
+                        {"from", static_cast<int>(e.before.from)},
+                        {"to", static_cast<int>(e.before.to)},
+                        {"depth_mm_before", e.before.depth_mm},
+                        {"depth_mm_after", e.depth_after_mm},
                         {"turn_degrees", e.turn_degrees},
                         {"outcome", outcome_name(e.outcome)}});
     }
@@ -126,14 +127,14 @@ std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<Bod
 }
 
 // Clips without an event are counted.
-std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts) {
+std::string fix_text(const std::vector<MendedClip>& clips) {
   std::string out;
   int clean = 0;
   for (const MendedClip& clip : clips) {
     if (clip.mend.events.empty() && clip.others == 0) {
       ++clean;
     } else {
-      out += clip_text(clip, parts);
+      out += clip_text(clip);
     }
   }
   if (clean == 0) return out;

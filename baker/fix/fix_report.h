@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "baker/bind/body_parts.h"
 #include "baker/fix/mend.h"
 
 namespace spherechain::baker {
@@ -17,8 +16,8 @@ struct MendedClip {
 };
 
 // The file of `fix --report`, and the same as text.
-std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts);
-std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts);
+std::string fix_json(const std::vector<MendedClip>& clips);
+std::string fix_text(const std::vector<MendedClip>& clips);
 
 // One line for a whole character: "3 clips, 7 events: 6 cleared, 1 fold".
 std::string fix_line(const std::vector<MendedClip>& clips);

@@ -15,22 +15,35 @@ constexpr double kDeeperShare = 0.1;  // plus this share of the depth before
 
 }  // namespace
 
-Goals::Goals(const std::vector<PosePenetration>& before, int frames, double mm_per_unit, double margin_mm,
-             const std::function<bool(const MendedEvent&)>& leave)
-    : mm_(mm_per_unit), margin_mm_(margin_mm) {
+Goals goals_of(const std::vector<PosePenetration>& before, int frames, const std::vector<BodyPart>& parts,
+               double mm_per_unit, double margin_mm, const std::function<bool(const Event&)>& leave) {
+  std::map<PenetrationKey, Penetration> at;
   std::vector<FramePenetration> faults;
   for (const PosePenetration& penetration : before) {
-    before_[place_of(penetration)] = penetration.found;
+    at[place_of(penetration)] = penetration.found;
     if (is_fault(penetration.found.kind)) faults.push_back({static_cast<int>(penetration.frame), penetration.found});
   }
+  std::vector<WorkingEvent> events;
   for (const EventSpan& span : join_events(faults, frames, false)) {
     const Penetration& worst = faults[span.deepest].found;
-    MendedEvent event{worst.part, worst.other, span.from, span.to, worst.kind, mm_ * double{worst.measures.depth}, 0};
-    event.worst = faults[span.deepest].frame;
-    if (worst.kind == SC_CLASS_DEEP_FOLD || worst.part == worst.other) event.outcome = MendOutcome::kFold;
-    if (leave(event)) event.outcome = MendOutcome::kAccepted;
-    events.push_back(event);
+    Event found;
+    found.parts = {parts[worst.part].name, parts[worst.other].name};
+    found.kind = worst.kind;
+    found.from = span.from;
+    found.to = span.to;
+    found.deepest = faults[span.deepest].frame;
+    found.depth_mm = mm_per_unit * double{worst.measures.depth};
+    const bool is_fold = worst.kind == SC_CLASS_DEEP_FOLD || worst.part == worst.other;
+    const WorkingState state = leave(found) ? WorkingState::kAccepted
+                               : is_fold    ? WorkingState::kFold
+                                            : WorkingState::kOpen;
+    events.push_back({std::move(found), worst.part, worst.other, state});
   }
+  return {std::move(events), std::move(at), mm_per_unit, margin_mm};
+}
+
+bool Goals::has_open_events() const {
+  return std::any_of(events.begin(), events.end(), [](const WorkingEvent& event) { return event.is_open(); });
 }
 
 const Penetration* Goals::before(const PenetrationKey& place) const {
@@ -38,19 +51,20 @@ const Penetration* Goals::before(const PenetrationKey& place) const {
   return known == before_.end() ? nullptr : &known->second;
 }
 
-const MendedEvent* Goals::event_at(const PenetrationKey& place) const {
-  const auto event = std::find_if(events.begin(), events.end(), [&](const MendedEvent& e) { return is_in(place, e); });
+const WorkingEvent* Goals::event_at(const PenetrationKey& place) const {
+  const auto event =
+      std::find_if(events.begin(), events.end(), [&](const WorkingEvent& e) { return e.contains(place); });
   return event == events.end() ? nullptr : &*event;
 }
 
 double Goals::allowed(const PosePenetration& penetration) const {
   const double apart = -margin_mm_ / mm_;
-  const MendedEvent* event = event_at(place_of(penetration));
+  const WorkingEvent* event = event_at(place_of(penetration));
   if (event == nullptr) {
     const bool is_new =
         penetration.found.kind == SC_CLASS_PENETRATION && penetration.found.part != penetration.found.other;
     if (is_new) return apart;
-  } else if (is_wanted(*event) && penetration.frame >= event->from && penetration.frame <= event->to) {
+  } else if (event->is_open() && penetration.frame >= event->found.from && penetration.frame <= event->found.to) {
     return apart;
   }
   const Penetration* known = before({std::round(penetration.frame), penetration.found.part, penetration.found.other});

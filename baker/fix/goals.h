@@ -7,9 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "baker/bind/body_parts.h"
 #include "baker/fix/find_faults.h"
-#include "baker/fix/mend.h"
 #include "baker/fix/separations.h"
+#include "baker/fix/working_event.h"
 
 namespace spherechain::baker {
 
@@ -20,22 +21,19 @@ inline PenetrationKey place_of(const PosePenetration& penetration) {
 // Targets of a fix: a clip's events, and the depth that each two parts may have in each frame.
 class Goals {
  public:
-  // `before`: penetrations in the clip's frames. `leave` returns true for events that must stay as they are.
-  Goals(const std::vector<PosePenetration>& before, int frames, double mm_per_unit, double margin_mm,
-        const std::function<bool(const MendedEvent&)>& leave);
+  // `before`: penetrations in the frames of the source clip.
+  Goals(std::vector<WorkingEvent> events, std::map<PenetrationKey, Penetration> before, double mm_per_unit,
+        double margin_mm)
+      : events(std::move(events)), mm_(mm_per_unit), margin_mm_(margin_mm), before_(std::move(before)) {}
 
-  std::vector<MendedEvent> events;
+  std::vector<WorkingEvent> events;
 
-  static bool is_wanted(const MendedEvent& event) { return event.outcome == MendOutcome::kReduced; }
-  static bool is_in(const PenetrationKey& place, const MendedEvent& event) {
-    return place.part == event.part && place.other == event.other && place.frame >= event.from - 1 &&
-           place.frame <= event.to + 1;
-  }
+  bool has_open_events() const;
 
   // Penetrations in the frames of the source clip.
   const std::map<PenetrationKey, Penetration>& before() const { return before_; }
   const Penetration* before(const PenetrationKey& place) const;  // null: no penetration
-  const MendedEvent* event_at(const PenetrationKey& place) const;
+  const WorkingEvent* event_at(const PenetrationKey& place) const;
   // The allowed depth in the source's units. Negative: the parts must be that far apart.
   double allowed(const PosePenetration& penetration) const;
   // Residual: the depth beyond the allowed one. 0 for penetrations that are left alone.
@@ -50,5 +48,10 @@ class Goals {
   double mm_, margin_mm_;
   std::map<PenetrationKey, Penetration> before_;
 };
+
+// Joins the penetrations of a source clip to events. `before`: in all of its frames. `leave` returns true for events
+// that must stay as they are.
+Goals goals_of(const std::vector<PosePenetration>& before, int frames, const std::vector<BodyPart>& parts,
+               double mm_per_unit, double margin_mm, const std::function<bool(const Event&)>& leave);
 
 }  // namespace spherechain::baker

@@ -2,12 +2,11 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "baker/events/join_events.h"
+#include "baker/events/event.h"
 #include "baker/fix/compare.h"
 #include "baker/fix/turned_clip.h"
 #include "baker/play/play.h"
@@ -21,20 +20,19 @@ struct MendOptions {
 };
 
 // The last three say why a fault stayed about as deep: a joint would exceed the budget, or the range of an elbow or
-// knee; or every way out shakes or causes other penetrations. kReduced also marks events that are still to be fixed.
+// knee; or every way out shakes or causes other penetrations.
 enum class MendOutcome { kCleared, kReduced, kFold, kAccepted, kOverBudget, kJointLimits, kNoWayOut };
 const char* outcome_name(MendOutcome outcome);
 
 // A penetration of two body parts over some frames, before and after the fix.
 struct MendedEvent {
-  std::uint32_t part, other;
-  int from, to;  // frames of the clip
-  PenetrationClass kind;
-  double depth_before, depth_after;  // mm
-  double turn_degrees = 0;           // largest turn of a joint in its frames
-  MendOutcome outcome = MendOutcome::kReduced;
-  int worst = 0;              // the frame in which it was deepest before
-  double needed_degrees = 0;  // for kOverBudget: the budget that would free its worst frame
+  // As found in the source clip, in whole frames. Only the parts, the class, the frames and the depth in mm are set.
+  Event before;
+  std::uint32_t part, other;  // numbers of its parts
+  double depth_after_mm;
+  double turn_degrees;  // largest turn of a joint in its frames
+  MendOutcome outcome;
+  double needed_degrees = 0;  // for kOverBudget: the budget that would free its deepest frame
 };
 
 struct Mend {
@@ -55,10 +53,9 @@ struct Mend {
 };
 
 // Turns joints until a clip has no faults in its frames and between them. Feet stay in place. No joint turns beyond the
-// budget, so some faults are only reduced, or stay. `leave` returns true for events that must stay as they are.
-// `report` receives the current step as text.
+// budget, so some faults are only reduced, or stay. `leave` returns true for events that must stay as they are; it
+// receives an event as MendedEvent::before has it. `report` receives the current step as text.
 Mend mend_clip(const AnimatedAsset& animated, const Roles& roles, const ClipFrames& clip, const MendOptions& options,
-               const std::function<bool(const MendedEvent&)>& leave,
-               const std::function<void(const std::string&)>& report);
+               const std::function<bool(const Event&)>& leave, const std::function<void(const std::string&)>& report);
 
 }  // namespace spherechain::baker

@@ -46,28 +46,28 @@ std::vector<char> PartJoints::moved_by(const std::set<Index>& joints) const {
 }
 
 LimbInTrouble limb_in_trouble(const Goals& goals, const PartJoints& parts, std::size_t event,
-                              const std::function<bool(std::size_t)>& is_open) {
+                              const std::function<bool(const WorkingEvent&)>& is_included) {
   const auto joints_of = [&](std::size_t e) { return parts.between(goals.events[e].part, goals.events[e].other); };
   std::set<Index> joints = joints_of(event);
-  LimbInTrouble out{{event}, {}, {}, goals.events[event].from, goals.events[event].to, {}};
+  LimbInTrouble out{{event}, {}, {}, goals.events[event].from(), goals.events[event].to(), {}};
   for (bool grows = !joints.empty(); grows;) {
     grows = false;
     for (std::size_t e = 0; e < goals.events.size(); ++e) {
-      const MendedEvent& other = goals.events[e];
-      if (other.from > out.to + 1 || other.to < out.from - 1 || !is_open(e)) continue;
+      const WorkingEvent& other = goals.events[e];
+      if (other.from() > out.to + 1 || other.to() < out.from - 1 || !is_included(other)) continue;
       if (std::find(out.events.begin(), out.events.end(), e) != out.events.end()) continue;
       const std::set<Index> its = joints_of(e);
       if (std::none_of(its.begin(), its.end(), [&](Index joint) { return joints.contains(joint); })) continue;
       out.events.push_back(e);
       joints.insert(its.begin(), its.end());
-      out.from = std::min(out.from, other.from);
-      out.to = std::max(out.to, other.to);
+      out.from = std::min(out.from, other.from());
+      out.to = std::max(out.to, other.to());
       grows = true;
     }
   }
   out.joints.assign(joints.begin(), joints.end());
   out.moves = parts.moved_by(joints);
-  for (const std::size_t e : out.events) out.worst.push_back(goals.events[e].worst);
+  for (const std::size_t e : out.events) out.worst.push_back(goals.events[e].deepest());
   return out;
 }
 

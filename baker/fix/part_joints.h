@@ -29,7 +29,7 @@ class PartJoints {
   std::set<Index> held_;
 };
 
-// An event, together with all events that share joints and frames with it.
+// An event, together with all events that share joints and frames with it and fulfil `is_included`.
 struct LimbInTrouble {
   std::vector<std::size_t> events;  // the requested event comes first
   std::vector<Index> joints;        // empty: no joint can turn
@@ -38,6 +38,6 @@ struct LimbInTrouble {
   std::vector<int> worst;           // the deepest frame of each event
 };
 LimbInTrouble limb_in_trouble(const Goals& goals, const PartJoints& parts, std::size_t event,
-                              const std::function<bool(std::size_t)>& is_open);
+                              const std::function<bool(const WorkingEvent&)>& is_included);
 
 }  // namespace spherechain::baker

@@ -9,19 +9,17 @@
 
 namespace spherechain::baker {
 
+// Seconds around a constraint in which joints may turn.
+inline constexpr double kWindowPad = 0.35;
+
+// Marks the frames that lie at most kWindowPad away from one of `frames`, or from the frame after it. In a loop, the
+// first and the last frame are marked together.
+std::vector<char> windows_around(const std::set<int>& frames, const TurnedClip& clip, bool loops);
+
+// The numbers of the marked frames, ascending.
+std::vector<int> marked_frames(const std::vector<char>& in_window);
+
 // Splits the marked frames into runs without a gap. In a loop, a run may continue from the last frame to the first.
 std::vector<std::vector<std::size_t>> contiguous_runs(const std::vector<char>& in_window, bool loops);
-
-// Fades out a joint's turns around failed frames: zero up to `seconds` away, full strength at twice that.
-void fade_out(const TurnedClip& clip, Index joint, const std::vector<char>& fails, double seconds, bool loops,
-              Turns& turns);
-
-// Joints whose turns add shaking: a joint below them has far more jerk than before. `height` is the character's.
-std::set<Index> shaking_joints(const TurnedClip& clip, const std::vector<std::size_t>& span, const Turns& turns,
-                               double height);
-
-// Smooths a joint's turns in a span with a Gaussian whose standard deviation is `frames`.
-void smooth(const TurnedClip& clip, Index joint, const std::vector<std::size_t>& span, double frames, bool loops,
-            Turns& turns);
 
 }  // namespace spherechain::baker

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -9,6 +10,9 @@
 #include "baker/motion/clip.h"
 
 namespace spherechain::baker {
+
+constexpr double to_radians(double degrees) { return degrees * std::numbers::pi / 180; }
+constexpr double to_degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
 // The range of an elbow or a knee in radians. 0: straight.
 struct Hinge {

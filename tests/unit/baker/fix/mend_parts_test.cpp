@@ -10,9 +10,11 @@
 #include "baker/fix/joints.h"
 #include "baker/fix/obstacle.h"
 #include "baker/fix/part_joints.h"
+#include "baker/fix/smoothing.h"
 #include "baker/fix/solve.h"
 #include "baker/fix/time_windows.h"
 #include "baker/fix/ways_out.h"
+#include "baker/fix/working_event.h"
 #include "named_rig.h"
 
 using namespace spherechain::baker;
@@ -270,4 +272,37 @@ TEST_CASE("mend: what lies together in time is one span, over a loop's seam too"
   using Spans = std::vector<std::vector<std::size_t>>;
   CHECK(contiguous_runs(windows, false) == Spans{{0, 1}, {4}, {6}});
   CHECK(contiguous_runs(windows, true) == Spans{{0, 1, 6}, {4}});
+}
+
+TEST_CASE("mend: windows open around a frame, and over a loop's seam") {
+  const Sticks s({"upper_arm.L"});
+  const int pad = static_cast<int>(std::ceil(kWindowPad * s.turned.fps()));
+  const std::vector<int> middle = marked_frames(windows_around({30}, s.turned, false));
+  CHECK(middle.front() == 30 - pad);
+  CHECK(middle.back() == 31 + pad);  // a penetration may lie between a frame and the next
+  CHECK(middle.size() == static_cast<std::size_t>(2 * pad + 2));
+  CHECK(marked_frames(windows_around({0}, s.turned, false)).back() == 1 + pad);
+  CHECK(marked_frames(windows_around({0}, s.turned, true)).back() == kClipFrames - 1);
+}
+
+TEST_CASE("mend: a residual gets better only if it falls clearly") {
+  LeastResidual least;
+  CHECK(least.gets_better(10, 0));
+  CHECK(!least.gets_better(9.5, 1));
+  CHECK(least.round == 0);
+  CHECK(least.gets_better(8, 2));
+  CHECK(least.round == 2);
+  CHECK(least.value == 8);
+}
+
+TEST_CASE("mend: an event contains penetrations of its parts up to a frame away") {
+  Event found;
+  found.from = 10;
+  found.to = 12;
+  const WorkingEvent event{found, 3, 5};
+  CHECK(event.is_open());
+  CHECK(event.contains({9.5, 3, 5}));
+  CHECK(event.contains({13, 3, 5}));
+  CHECK(!event.contains({13.5, 3, 5}));
+  CHECK(!event.contains({11, 3, 4}));
 }
