@@ -2,8 +2,8 @@
 // Bakes and validates characters. Writes docs/accuracy-sweeps.md, and the marked sections of docs/accuracy.md:
 //   scripts/accuracy.mjs build/release/bin/spherechain [CHARACTER]... [--depth CHARACTER[+MOTION]...]
 // Characters: the MakeHuman body of assimp-testmodels with three recordings and samples/poses; then each CHARACTER with
-// its own clips. Those after --depth are evaluated by depth_study; without them its table stays. Expected beside the
-// tool, and built by name:
+// its own clips. Characters after --depth are evaluated by depth_study; without them its table stays. Expected beside
+// the tool, and built by name:
 //   cmake --build --preset release --target accuracy_study depth_study volume_study
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";

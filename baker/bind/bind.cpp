@@ -24,8 +24,8 @@ std::vector<std::uint32_t> assign_triangles(const Mesh& mesh, const std::vector<
 }
 
 // Triangles of pieces too small to be body (eyes, teeth, buttons): they may move on their own, so they carry no sphere.
-// Where much of the skin is in such pieces (armour, a robot), those that lie on the body are the body. What follows the
-// bones is never loose.
+// Where much of the skin is in such pieces (armour, a robot), those that lie on the body are the body. Triangles that
+// follow the bones are never loose.
 std::vector<bool> loose_triangles(const Character& character, const Regions& regions) {
   const std::vector<bool>& by_bones = regions.by_bones;
   if (regions.is_tree() && std::find(by_bones.begin(), by_bones.end(), false) == by_bones.end()) {

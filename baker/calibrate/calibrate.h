@@ -18,8 +18,8 @@ inline constexpr int kCalibrationPoses = 1800;
 // 1. Each pair gets a distance below which it is reported: where the contacts that it finds are worth their false
 //    alarms (reach.h). Spheres that nearly touch at rest should reach as far as their distance there less 0.6 of the
 //    gap between the skins, or 1.03 of that distance where the gap is below 0.3 % of the height.
-// 2. Detect radii of spheres that follow the bones become what these distances need. Those of a body of limbs and torso
-//    alone stay: they miss next to nothing. So do those that a person chose.
+// 2. Detect radii of spheres that follow the bones become what these distances need. The radii of a body of limbs and
+//    torso alone stay: they miss next to nothing. Radii that a person chose stay, too.
 // 3. A pair becomes a rest pair where its own distance is below the sum of the radii, and saves false alarms in more
 //    than 1 % of the poses, or at rest.
 // A character that has neither bones nor joints takes no poses: its radii stay, and the distance at rest alone counts.

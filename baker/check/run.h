@@ -53,8 +53,8 @@ struct RunState {
 std::vector<CheckedClip> check_library(const std::vector<LibraryCharacter>& library, const RunOptions& options,
                                        const Store& store, const std::function<void(const RunState&)>& progress);
 
-// Kinds of files in the store. Of a character: its asset, its CharacterResult, its page. Of a clip: its ClipResult, its
-// page, its pictures (picture_file), its HeatSpots.
+// Kinds of files in the store. A character has its asset, its CharacterResult and its page; a clip has its ClipResult,
+// its page, its pictures (picture_file) and its HeatSpots.
 inline constexpr const char *kAssetFile = ".sphc", *kResultFile = ".json", *kPageFile = ".js", *kPictureFile = ".png",
                             *kHeatFile = ".heat";
 // The name of a clip's picture of that number: 0 is kPictureFile.

@@ -150,8 +150,8 @@ class NearestMeans {
     for (Eigen::Index k = 0; k < count; ++k) {
       from_.col(k) = points_.row(mean.of[static_cast<std::size_t>(k)]).transpose() - place;
     }
-    // The shares of the least mean are those of this system's solution, over their sum. What is added to each of the
-    // products changes their size alone, and makes the system regular.
+    // The shares of the least mean are those of this system's solution, over their sum. The constant that is added to
+    // each of the products changes the size of the solution alone, and makes the system regular.
     products_.noalias() = from_.transpose() * from_;
     products_.array() += products_.trace() / static_cast<double>(count);
     const Eigen::LLT<Eigen::MatrixXd> factors(products_);
@@ -185,8 +185,8 @@ class NearestMeans {
 };
 
 // Chooses the vertex that is farthest from the hull of those before, again and again. More points bring no vertex
-// farther away: only those that may be farthest are looked at again. Of fine skin it looks at an even part: that the
-// others are near is measured, not assumed.
+// farther away: only those that may be farthest are looked at again. On fine skin it looks at an even part of the
+// vertices: that the others are near is measured, not assumed.
 NearestMeans choose_points(const Eigen::MatrixXd& vertices, double near) {
   NearestMeans means(vertices, kNearest * near);
   const Eigen::Index stride = (vertices.cols() + kCandidates - 1) / kCandidates;

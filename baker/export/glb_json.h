@@ -33,7 +33,8 @@ bool is_own(const nlohmann::ordered_json& thing);
 std::vector<int> take_out(nlohmann::ordered_json& array,
                           const std::function<bool(std::size_t, const nlohmann::ordered_json&)>& is_out);
 
-// Numbers of an array's entries after take_out; those of entries that went are left out. What is no number stays.
+// Numbers of an array's entries after take_out; those of entries that went are left out. Elements that are no numbers
+// stay.
 void renumber(nlohmann::ordered_json& numbers, const std::vector<int>& went);
 
 }  // namespace spherechain::baker

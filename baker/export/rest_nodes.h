@@ -13,7 +13,7 @@ class RestNodes {
  public:
   explicit RestNodes(const nlohmann::ordered_json& json);
 
-  // A node's space -> the scene's. Of a number that is none: the scene's.
+  // A node's space -> the scene's. The map is the identity for a number that is no node's.
   Affine world(int node) const;
 
   // Appends all nodes below one.

@@ -22,12 +22,14 @@ struct SolidMass {
 // thousandth of the character's mass, for engines refuse a moving body without one.
 std::vector<SolidMass> masses_of(const Colliders& colliders);
 
-// Balls that stand for a volume. Of a cone their surface is within a fortieth of its radius there; a tip of less than a
-// twentieth of the larger radius stays bare. Of an ellipsoid or a box it is beyond by at most an eighth of the smallest
-// radius; the edges of a box, and the ends of long ellipsoids, stay bare.
+// Balls that stand for a volume. The surface of a cone's balls is off the cone's by at most a fortieth of its radius
+// there; a tip of less than a twentieth of the larger radius stays bare. The balls of an ellipsoid or a box go beyond
+// its surface by at most an eighth of its smallest radius; the edges of a box, and the ends of long ellipsoids, stay
+// bare.
 std::vector<BallVolume> balls_of(const Volume& volume);
 
-// The colliders with balls in place of the volumes that `stays` does not accept. What that costs goes into `notes`.
+// The colliders with balls in place of the volumes that `stays` does not accept. A note of what the exchange costs goes
+// into `notes`.
 Colliders with_balls(const Colliders& colliders, bool (*stays)(const Volume&), std::vector<std::string>& notes);
 
 // Identifiers of the bodies, each once.

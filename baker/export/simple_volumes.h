@@ -24,7 +24,8 @@ Volume without_inner_ball(const Volume& volume);
 // volume where they can.
 SimpleVolumes as_capsule(const Volume& volume);
 
-// Balls inside a ball or a cone, no farther from each other than their radius. Of others: of their capsule.
+// Balls inside a ball or a cone, no farther from each other than their radius. Any other volume gets the balls of its
+// capsule.
 SimpleVolumes as_balls(const Volume& volume);
 
 // The same, but an ellipsoid alone becomes a capsule.

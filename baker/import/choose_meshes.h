@@ -18,8 +18,8 @@ struct ShownMesh {
 };
 
 // Which of the meshes are read. `character` is the name of a node, a mesh or a skin: its meshes, those below it, and
-// those that move with a skeleton below it; empty: all. Of several levels of detail ("body_LOD0", "body_LOD1") the
-// finest is read, which a note says. Throws Error(kFile) where the character has no mesh.
+// those that move with a skeleton below it; empty: all. Where there are several levels of detail ("body_LOD0",
+// "body_LOD1"), the finest is read, which a note says. Throws Error(kFile) where the character has no mesh.
 std::vector<bool> choose_meshes(const std::vector<Node>& nodes, const std::vector<ShownMesh>& meshes,
                                 const std::string& character, const std::string& file);
 
@@ -29,8 +29,8 @@ struct SkinnedBox {
   Eigen::AlignedBox3d box;
 };
 
-// The characters in a file where there are several: skeletons of their own that move meshes beside each other. Of each
-// the name by which `choose_meshes` takes it alone. Else empty.
+// The characters in a file where there are several: skeletons of their own that move meshes beside each other. Each is
+// given by the name by which `choose_meshes` takes it alone. The list is empty where there are not several.
 std::vector<std::string> characters_in(const std::vector<Node>& nodes, const std::vector<SkinnedBox>& skinned,
                                        const Vec3& up);
 // "has 2 characters ('Hips', 'Hips.001')".

@@ -33,8 +33,8 @@ struct FbxFile {
 
 bool is_fbx(std::string_view bytes);
 
-// Binary or text, of version 7 or later. What is not understood is left out; nothing is where the file is damaged.
-// Names lead into `bytes`.
+// Binary or text, of version 7 or later. Records that are not understood are left out; a damaged record ends the list
+// that it is in. Names lead into `bytes`.
 FbxFile read_fbx(std::string_view bytes);
 
 }  // namespace spherechain::baker

@@ -10,8 +10,8 @@
 
 namespace spherechain::baker {
 
-// Gathers the base colours of a glTF's primitives, in the order of the source's vertices and triangles. What is wrong
-// or not there stays white.
+// Gathers the base colours of a glTF's primitives, in the order of the source's vertices and triangles. A colour that
+// is wrong or not there stays white.
 class GltfLook {
  public:
   GltfLook(const GltfFile& file, const std::filesystem::path& path);

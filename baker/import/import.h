@@ -114,8 +114,8 @@ struct SourceMesh {
 // Throws Error(kFile) where the path is not a regular file: what is read more than once must be on a disk.
 void check_regular_file(const std::filesystem::path& path);
 
-// The files that a source names, whether they exist or not: a glTF's buffers and images, an OBJ's materials. None where
-// it cannot be read; read_source tells why.
+// The files that a source names, whether they exist or not: a glTF's buffers and images, an OBJ's materials. The list
+// is empty where the source cannot be read; read_source tells why.
 std::vector<std::filesystem::path> files_beside(const std::filesystem::path& source);
 
 // All files that are read with a source of any format (skeletons, animations, materials, other meshes), and the

@@ -87,8 +87,8 @@ struct SourceRig {
 };
 
 // Which of the maps that a skin's bones are at rest holds for most of it: the one nearest to the median of all, entry
-// by entry, each with the weight of the skin it moves. Of maps that are alike it is the first. A bone that was bound in
-// other units or axes than the others does not decide. All maps are finite, and there is one at least.
+// by entry, each with the weight of the skin it moves. The first of several maps that are alike is chosen. A bone that
+// was bound in other units or axes than the others does not decide. All maps are finite, and there is one at least.
 std::size_t typical_map(const std::vector<Affine>& maps, const std::vector<double>& weights);
 
 // Every node's transform into the scene.

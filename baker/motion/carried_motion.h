@@ -25,7 +25,8 @@ class CarriedMotion : public Motion {
   virtual std::vector<Index> recorded_nodes() const = 0;
 
   // The rotations of the recording's nodes, each in its parent's space, at which the character's nodes are turned as
-  // in `world` (world_at). What no node of the character follows stays in its parent's space as it is.
+  // in `world` (world_at). A node of the recording that no node of the character follows keeps the rotation that it has
+  // in its parent's space.
   virtual std::vector<Eigen::Quaterniond> recorded_rotations(double seconds,
                                                              const std::vector<Affine>& world) const = 0;
 };

@@ -14,8 +14,8 @@
 namespace spherechain::baker {
 
 // Rotations of joints from the rest pose, in the character's own axes (x left, y up, z forward), about each joint's
-// position, applied before the rotation of its parent. What does more than turn has a movement instead, with the
-// character's height as the unit.
+// position, applied before the rotation of its parent. A joint that does more than turn has a movement instead, with
+// the character's height as the unit.
 struct Pose {
   std::map<std::string, Eigen::Quaterniond> rotations;
   std::map<std::string, Affine> movements;

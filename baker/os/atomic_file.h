@@ -10,7 +10,7 @@
 namespace spherechain::baker {
 
 // A file that is written piece by piece, and whole or untouched: `path` becomes it in finish(), and without that stays
-// what it was. What is_written_directly gets each piece at once. Everything throws Error(kFile).
+// what it was. A path that is_written_directly gets each piece at once. Everything throws Error(kFile).
 class AtomicFile {
  public:
   explicit AtomicFile(const std::filesystem::path& path);

@@ -91,7 +91,8 @@ class Reader {
 };
 
 json parse(const std::string& text, const std::string& file) {
-  // The deepest of settings is in 'clusters' or 'targets'. What is deeper would be copied and printed on the stack.
+  // The deepest of settings is in 'clusters' or 'targets'. JSON that is nested more deeply would be copied and printed
+  // on the stack.
   constexpr int kNestedMax = 8;
   const auto shallow = [&](int depth, json::parse_event_t, const json&) {
     if (depth > kNestedMax) throw Error(ExitCode::kFile, file + ": is nested more deeply than settings are");

@@ -25,8 +25,8 @@ std::vector<bool> at_or_above(const Skeleton& skeleton, int node);
 
 Body find_body(const Skeleton& skeleton, const std::vector<Hint>& hints, BodyKind wanted);
 
-// The node outside the limbs whose hint is `word`. Of several: the one in a role file, else the nearest to the root,
-// else the one with the largest weight. -1 none.
+// The node outside the limbs whose hint is `word`. Where there are several, it is the one in a role file, else the
+// nearest to the root, else the one with the largest weight. -1: there is none.
 int find_in_middle(const Skeleton& skeleton, const std::vector<Hint>& hints, const std::vector<int>& path_of,
                    Word word);
 

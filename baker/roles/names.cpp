@@ -59,7 +59,7 @@ void split_unspaced(const std::u32string& run, Tokens& tokens) {
 }
 
 // Runs of letters without case: split at all else, before a capital after a small letter, and before the last of
-// several capitals ("LHipJoint" -> l hip joint). What stands before a colon or a bar is a namespace.
+// several capitals ("LHipJoint" -> l hip joint). The part of a name before a colon or a bar is a namespace.
 Tokens split(std::string_view name) {
   const std::size_t space = name.find_last_of(":|");
   if (space != std::string_view::npos && space + 1 < name.size()) name.remove_prefix(space + 1);

@@ -15,7 +15,8 @@ VolumeShape volume_shape(const std::string& name);  // one of those
 // The asset's body parts with volumes of one shape, `at_most` of them in all; 0: as many as pay. They go where they
 // bring the skin and the volumes' surface nearest to each other. Where there are more parts than volumes, and of small
 // parts, the volumes of the part that one hangs on stand for it, too: those first that leave them least when their
-// joint bends. Spheres without a limit are as many as the asset's own. What need not be tested at rest is ignored.
+// joint bends. Spheres without a limit are as many as the asset's own. A pair of bodies need not be tested, and is
+// ignored, where one hangs on the other or where their volumes overlap at rest.
 Colliders fit_volumes(const OpenAsset& asset, VolumeShape shape, int at_most);
 
 }  // namespace spherechain::baker

@@ -39,7 +39,8 @@ using Volume = std::variant<BallVolume, ConeVolume, EllipsoidVolume, BoxVolume>;
 // The name in capsules.json and in texts: "sphere", "capsule" (a cone of equal radii), "cone", "ellipsoid", "box".
 const char* volume_name(const Volume& volume);
 
-// From the surface to the point, negative inside. Of an ellipsoid an approximation, exact on its surface.
+// The distance from the surface to the point, negative inside. For an ellipsoid it is an approximation, exact on its
+// surface.
 double signed_distance(const Volume& volume, const Vec3& point);
 
 // The farthest point along a direction, which has any length but 0.

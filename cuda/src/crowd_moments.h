@@ -188,7 +188,7 @@ SPHERECHAIN_HD void add_few_centers(const Shared& shared, std::uint32_t lane, co
   }
 }
 
-// Spheres of the same two bones, or of the same three. Of three bones the Gram matrices fill the registers with half of
+// Spheres of the same two bones, or of the same three. The Gram matrices of three bones fill the registers with half of
 // their columns at a time.
 template <std::size_t kBones>
 SPHERECHAIN_HD void refit_few_bones(const GroupView& v, const Shared& shared, std::uint32_t lane,

@@ -152,8 +152,8 @@ namespace Spherechain
         public uint Classes;
         /// <summary>The worst so many; 0: as many as there is room for.</summary>
         public int Limit;
-        /// <summary>The penetrations of the frame before: directions of faults then stay steady. What the body returned, or a
-        /// copy.</summary>
+        /// <summary>The penetrations of the frame before: directions of faults then stay steady. They are what the body
+        /// returned, or a copy.</summary>
         public Results<Penetration> Previous;
         /// <summary>Of steps, a share of the height; 0: 0.0001.</summary>
         public float Tolerance;
@@ -284,7 +284,8 @@ namespace Spherechain
             return spherePairs;
         }
 
-        /// <summary>What touches on the way from the pose before to this one. Of a body that was made with `findsSteps`.</summary>
+        /// <summary>What touches on the way from the pose before to this one. The body must be made with
+        /// `findsSteps`.</summary>
         public Results<StepContact> Steps(Query query = default(Query))
         {
             Ask(Question.Steps, null, ref query);

@@ -595,7 +595,7 @@ namespace Spherechain
             /// <summary>out: sc_pair_words() words an instance; or null</summary>
             public ulong* Bits;
             public UIntPtr BitWords;
-            /// <summary>out: sorted by instance, then pair; or null. What lies past pair_count is written too. With several tasks leave room for twice the pairs, or it takes a second pass</summary>
+            /// <summary>out: sorted by instance, then pair; or null. Entries past pair_count are written too. With several tasks leave room for twice the pairs, or it takes a second pass</summary>
             public CrowdPair* Pairs;
             public UIntPtr PairCapacity;
             /// <summary>out: how many there are, also where `pairs` is too small</summary>

@@ -56,7 +56,7 @@ export interface Model {
    * vertices, a last bone of that name stands for them, and needs no joint. `inverseBind`: 16 floats by columns. */
   readonly bones: readonly { readonly name: string; readonly inverseBind: Float32Array }[];
   /** Body parts as people call them: "right hand". `bone`: that it follows; `joint`: yours that moves it; `parent`: the part that it hangs
-   * on. Of two parts the one with more `mobility` goes into the other. */
+   * on. Where two parts intersect, the one with more `mobility` goes into the other. */
   readonly parts: readonly {
     readonly name: string; readonly side: Side; readonly bone: number; readonly joint: number; readonly parent: number; readonly mobility: number;
   }[];

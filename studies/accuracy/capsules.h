@@ -38,7 +38,8 @@ class CapsuleRagdoll {
   // The pairs of capsules that touch in a frame; sorted. A capsule is carried rigidly, its radius as it is.
   std::vector<Pair> pairs(const Deformation& deformation) const;
 
-  // The spheres' true pairs by capsules. Those within one capsule are a pair with itself, which is never reported.
+  // The spheres' true pairs by capsules. True pairs within one capsule become a pair of that capsule with itself, which
+  // is never reported.
   FrameTruth by_capsules(const FrameTruth& truth) const;
 
  private:

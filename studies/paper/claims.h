@@ -44,8 +44,9 @@ Table compare_readings(const Results& results);
 // defaults.csv: setting, current, follows, rule, finding.
 Table derive_defaults(const Results& results);
 
-// Which of several settings follows. Of a curve of falling error over rising cost where it bends most: farthest from
-// the line between its ends, both axes scaled to 1. Or the cheapest whose error is within a tenth of the least.
+// Which of several settings follows. bend() takes the point where a curve of falling error over rising cost bends most:
+// farthest from the line between its ends, both axes scaled to 1. cheapest_within_tenth() takes the cheapest whose
+// error is within a tenth of the least.
 std::size_t bend(const std::vector<double>& cost, const std::vector<double>& error);
 std::size_t cheapest_within_tenth(const std::vector<double>& cost, const std::vector<double>& error);
 

@@ -18,7 +18,7 @@ typedef struct sc_part_contact {
   sc_vec3 low, high;       /* a box around the triangles that intersect; the pose's space */
 } sc_part_contact;
 
-/* Two triangles that intersect. What ends with _a is of triangle_a. */
+/* Two triangles that intersect. Fields that end with _a are of triangle_a. */
 typedef struct sc_triangle_contact {
   uint32_t triangle_a, triangle_b; /* the source's numbers, triangle_a < triangle_b */
   uint32_t sphere_a, sphere_b;

@@ -38,7 +38,7 @@ typedef struct sc_crowd_job {
   size_t count_capacity SC_ZERO;
   uint64_t* bits SC_ZERO; /* out: sc_pair_words() words an instance; or null */
   size_t bit_words SC_ZERO;
-  sc_crowd_pair* pairs SC_ZERO; /* out: sorted by instance, then pair; or null. What lies past pair_count is written
+  sc_crowd_pair* pairs SC_ZERO; /* out: sorted by instance, then pair; or null. Entries past pair_count are written
                                    too. With several tasks leave room for twice the pairs, or it takes a second pass */
   size_t pair_capacity SC_ZERO;
   size_t pair_count SC_ZERO; /* out: how many there are, also where `pairs` is too small */

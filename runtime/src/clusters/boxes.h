@@ -176,8 +176,8 @@ HWY_INLINE void unite_clusters(const PosedClusters& posed, std::size_t sphere) {
   }
 }
 
-// A ball against those of a vector: those that it surely does not touch. Of a sum of squares of rounded differences
-// 2^-20 is more than all roundings.
+// A ball against those of a vector: those that it surely does not touch. A share of 2^-20 of a sum of squares of
+// rounded differences is more than all roundings.
 struct BallProbe {
   Vector center[3], radius;
 

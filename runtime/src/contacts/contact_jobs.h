@@ -21,8 +21,8 @@ namespace spherechain {
 struct ContactJob {
   Target target{};
   std::int32_t spheres_only = 0;  // 1: finds pairs of spheres alone, each until its first contact
-  // A bit for each two parts that are asked about; null: all are. Of one body with n parts it is bit
-  // a n + b - a (a + 1) / 2, a <= b; of two, bit a n + b, where b has n parts.
+  // A bit for each two parts that are asked about; null: all are. Parts a <= b of one body with n parts have bit
+  // a n + b - a (a + 1) / 2. Parts a and b of two bodies have bit a n + b, where the second body has n parts.
   const std::uint64_t* part_pairs = nullptr;
   std::uint64_t* scratch = nullptr;  // skin_scratch_words() words, or body_scratch_words()
   std::size_t scratch_words = 0;

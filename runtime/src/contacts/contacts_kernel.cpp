@@ -240,7 +240,7 @@ HWY_NOINLINE void find_listed(const PosedClusters& posed, ContactCollector& coll
   decide_clusters({posed, posed, true}, clusters, collector);
 }
 
-// Bit k: a's sphere first + k is to be paired with b's sphere b. Of one body only those before b.
+// Bit k: a's sphere first + k is to be paired with b's sphere b. Within one body, only spheres before b are paired.
 HWY_INLINE std::uint64_t paired(const Bodies& bodies, std::size_t first, std::size_t b) {
   const PosedClusters& posed = bodies.a;
   std::uint64_t bits = ~std::uint64_t{0};

@@ -187,7 +187,7 @@ HWY_INLINE void multiply_pairs(const LaneRefit& batch, const BonePair* pairs, st
   }
 }
 
-// Takes a pair's products up into the sums of spheres whose moments are `step` apart. What is 0 adds nothing.
+// Takes a pair's products up into the sums of spheres whose moments are `step` apart. Entries that are 0 add nothing.
 template <std::size_t kSpheres, std::size_t kFirst, bool kOwn, bool kIsFirst>
 HWY_INLINE void add_pair(const float* product, const Moment* moments, std::size_t step,
                          Vector (&sums)[kSpheres][kHalfProducts]) {

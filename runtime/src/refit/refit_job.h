@@ -11,8 +11,8 @@ namespace spherechain {
 
 // Moves the spheres with the bones, or with the deformed vertices. From bones it never touches the mesh: a sphere's
 // centre and radius are the moments of its pivots, which follow from the matrices (docs/arithmetic.md). Both ways give
-// the same spheres but for rounding. Where the pose has both, bones are taken. Morph weights move no sphere. What is
-// not finite gives spheres that are not finite; they touch nothing. It needs 40 KiB of stack.
+// the same spheres but for rounding. Where the pose has both, bones are taken. Morph weights move no sphere. Matrices
+// and vertices that are not finite give spheres that are not finite; they touch nothing. The job needs 40 KiB of stack.
 struct RefitJob {
   const Asset* asset = nullptr;  // open
   Pose pose;                     // bones or vertices

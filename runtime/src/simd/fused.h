@@ -14,8 +14,8 @@ float fused_multiply_add_slow(float a, float b, float c) noexcept;
 
 // A product of floats is exact in double precision, and so rounded twice is only the sum: to double, then to float.
 // That is the sum rounded once, unless the double lies half way between two floats. Where it does, or where the floats
-// are spaced otherwise for it is below the least normal one, 2^-126, is looked at again. What no float is, is none of
-// those.
+// are spaced otherwise for it is below the least normal one, 2^-126, is looked at again. Infinities and NaNs are
+// never looked at again.
 inline bool may_round_twice(std::uint64_t sum) {
   const std::uint64_t magnitude = sum << 1 >> 1;
   return (sum & 0x1FFFFFFFU) == 0x10000000U || (magnitude != 0 && magnitude < 0x3810000000000000U);

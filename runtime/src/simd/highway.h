@@ -7,9 +7,9 @@
 //   #include "runtime/src/simd/highway.h"
 //
 // and is then compiled once a target, its kernels between HWY_BEFORE_NAMESPACE(); namespace spherechain { namespace
-// HWY_NAMESPACE { and HWY_AFTER_NAMESPACE();. What comes once goes between #if HWY_ONCE and #endif. Kernels call no
-// function of the standard library that is a template: one instantiated here would carry this target's instructions to
-// machines without them.
+// HWY_NAMESPACE { and HWY_AFTER_NAMESPACE();. Code that comes once goes between #if HWY_ONCE and #endif. Kernels call
+// no function of the standard library that is a template: one instantiated here would carry this target's instructions
+// to machines without them.
 //
 // Headers of kernels are compiled once a target too: their guards go by HWY_TARGET_TOGGLE, as Highway's own do, and
 // they include this header before the guard, so that each target meets the guard as the others do.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Triangles that other pieces of the skin hide at rest: a body below a suit, teeth, the lining of a coat. From their
-// fronts every look ends at another piece. Of eight triangles of a cluster that follow one another, one is looked from.
+// fronts every look ends at another piece. One of every eight triangles of a cluster that follow one another is looked
+// from.
 #pragma once
 
 #include "runtime/src/skin/skin_table.h"

@@ -102,7 +102,7 @@ struct Surface {
 };
 
 // Hands out arrays of a caller's words, each from a cache line on, and with a line to spare: vectors of any target may
-// be read and written that far past its end. Of null words it only counts how many there have to be.
+// be read and written that far past its end. With null words it only counts how many there have to be.
 class WordMemory {
  public:
   explicit WordMemory(std::uint64_t* words, std::size_t used = 0) : words_(words), used_(used) {}

@@ -71,7 +71,8 @@ HWY_INLINE Box way_of_spans(const MovingSkin& posed, std::size_t cluster, const 
 
 // The cluster's triangles whose boxes around the way, `stray` wider, touch the box, but for what single corners tell;
 // seen along with the drift.
-// False where there are none. Those that are degenerate at one end are left out: on the way to a point all would meet.
+// False where there are none. Triangles that are degenerate at one end are left out: on the way to a point all would
+// meet.
 inline HWY_NOINLINE bool load_moving_block(const MovingSkin& posed, std::size_t cluster_index, const Box& box,
                                            const Drift& drift, float stray, MovingBlock& out) {
   constexpr Floats kFloats;

@@ -46,7 +46,8 @@ struct StepJob {
   float tolerance = 0;               // a share of the height of a's asset; 0: 0.0001
   std::uint64_t* scratch = nullptr;  // step_scratch_words() words
   std::size_t scratch_words = 0;
-  // Out: sorted by (part_a, part_b), each once; null: count only. Of n parts at most n (n + 1) / 2; of two bodies n m.
+  // Out: sorted by (part_a, part_b), each once; null: count only. One body of n parts has at most n (n + 1) / 2
+  // contacts; two bodies of n and m parts have at most n m.
   StepContact* contacts = nullptr;
   std::size_t contact_capacity = 0;
   std::size_t contact_count = 0;
@@ -58,8 +59,8 @@ struct StepJob {
   Status run() noexcept;
 };
 
-// Words of scratch memory for those assets and numbers of joints; b null: one body. Of two bodies those that have
-// vertices need more. 0 where an asset is not open or has no triangles, or there are too many joints.
+// Words of scratch memory for those assets and numbers of joints; b null: one body. Each of two bodies needs more where
+// it has vertices. 0 where an asset is not open or has no triangles, or there are too many joints.
 std::size_t step_scratch_words(const Motion* a, const Motion* b) noexcept;
 
 }  // namespace spherechain

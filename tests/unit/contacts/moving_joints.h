@@ -9,7 +9,7 @@
 
 namespace spherechain::test {
 
-// moving_human()'s rig between two poses. What a step job does with its joints is done here by Eigen.
+// moving_human()'s rig between two poses. Eigen does here what a step job does with its joints.
 class MovingJoints {
  public:
   enum class Order { kFlat, kDownTheSkeleton };

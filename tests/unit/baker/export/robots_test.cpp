@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Robots of volumes made by hand. What MuJoCo, urdfdom and planners say of real characters: tests/export.
+// Robots of volumes made by hand. tests/export has what MuJoCo, urdfdom and planners say of real characters.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -107,7 +107,7 @@ export class Contacts {
   }
 
   // Pairs of body parts over a run of frames: [{key, name, frames, worst, kind, depth, visible}], faults first, the deepest
-  // first. Of a pair that is a fault in some frame, only frames in which it is one count.
+  // first. A pair that is a fault in some frame counts only in the frames in which it is one.
   over(first, count) {
     const found = new Map();
     for (let frame = first; frame < first + count; ++frame) {

@@ -1,4 +1,4 @@
-// The results' tabs. Those of the method go when the method goes.
+// The results' tabs. Tabs of the paper's method are shown only while the method is.
 export function bindTabs(store) {
   const tabs = [...document.querySelectorAll('[role=tab]')];
   const choose = (tab) => {

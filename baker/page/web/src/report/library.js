@@ -6,7 +6,7 @@ import { characterLink, clipLink } from './links.js';
 import { baseline, download, isAccepted, isFault, onMarks } from './marks.js';
 import { followTheme } from './theme.js';
 
-// The library: a row a clip. What a row draws, it draws once it comes into sight.
+// The library: a row a clip. A row draws its strip once it comes into sight.
 
 const $ = (id) => document.getElementById(id);
 

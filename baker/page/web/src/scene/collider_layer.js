@@ -1,8 +1,8 @@
 import * as THREE from 'three';
 import { COLLIDER, CONTACT } from '../base/palette.js';
 
-// Colliders as an engine would have them: each body part's volumes, moved rigidly with its bone. Those of parts that overlap are
-// red.
+// Colliders as an engine would have them: each body part's volumes, moved rigidly with its bone. The volumes of parts
+// that overlap are red.
 
 const UP = new THREE.Vector3(0, 1, 0);
 
