@@ -9,7 +9,7 @@ if ! git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
   exit 0
 fi
 git ls-files '*.h' '*.cpp' '*.cu' '*.cuh' | xargs clang-format --dry-run -Werror
-if [[ $# -gt 0 ]]; then
+if [[ $# -gt 0 ]] && git rev-parse --quiet --verify "$1" >/dev/null; then
   git diff --name-only --diff-filter=d "$1" -- 'runtime/src/*.cpp' |
     xargs --no-run-if-empty clang-tidy -p build/release --quiet --warnings-as-errors='*' --extra-arg=-Qunused-arguments
 fi

@@ -16,6 +16,6 @@ for preset in release asan; do
   echo "== $preset"
   cmake --preset "$preset" >/dev/null
   cmake --build --preset "$preset"
-  if [[ "$preset" == release ]]; then scripts/lint.sh; fi
+  if [[ "$preset" == release ]]; then scripts/lint.sh HEAD~1; fi
   ctest --preset "$preset" --no-tests=error
 done

@@ -32,7 +32,7 @@ template <typename Floats>
 bool is_finite(const Floats& value) {
   static_assert(sizeof(Floats) % sizeof(float) == 0 && alignof(Floats) == alignof(float));
   const auto* const first = reinterpret_cast<const float*>(&value);
-  return std::all_of(first, first + sizeof(Floats) / sizeof(float), [](float v) { return std::isfinite(v); });
+  return std::all_of(first, reinterpret_cast<const float*>(&value + 1), [](float v) { return std::isfinite(v); });
 }
 
 inline bool is_above_0(float value) { return std::isfinite(value) && value > 0.0F; }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "runtime/src/base/arithmetic.h"
@@ -67,7 +66,7 @@ BoneSize bone_size(const BoneMatrices& bones, std::size_t bone) {
 // Prepares bounds by bones: marks every group as not bounded, and stores each bone's size and its matrix by columns.
 void prepare_bounds(const AssetView& asset, PosedClusters& posed) {
   const BoneMatrices& bones = posed.skin.bones;
-  std::memset(posed.is_group_bounded, 0, asset.skin().bounds_term_counts.size);
+  std::fill_n(posed.is_group_bounded, asset.skin().bounds_term_counts.size, std::uint8_t{0});
   for (std::size_t bone = 0; bone < asset.bone_count(); ++bone) {
     posed.bone_sizes[bone] = bone_size(bones, bone);
     const float* const matrix = bones.data + bone * bones.stride;
@@ -197,8 +196,8 @@ void set_pose(const AssetView& asset, const Surface& surface, const Pose& pose, 
   posed.first_cluster = surface.first_clusters.data;
   posed.positions = pose.vertices;
   posed.stride = vertex_stride(pose) / sizeof(float);
-  std::memset(posed.is_loaded, 0, surface.clusters.size);
-  std::memset(posed.is_bounded, 0, posed.sphere_count);
+  std::fill_n(posed.is_loaded, surface.clusters.size, std::uint8_t{0});
+  std::fill_n(posed.is_bounded, posed.sphere_count, std::uint8_t{0});
   posed.ignored = asset.ignored();
   if (filter != nullptr) {
     posed.ignored = {filter->ignored, filter->ignored_words};

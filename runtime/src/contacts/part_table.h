@@ -2,9 +2,9 @@
 // A table with one entry for each pair of body parts.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 
 #include "runtime/src/base/memory.h"
 #include "spherechain/contacts.h"
@@ -30,7 +30,7 @@ struct TableOfParts {
     memory.take(seen, word_count);
     memory.take(contacts, pairs);
   }
-  void clear() const { std::memset(seen, 0, word_count * sizeof(std::uint64_t)); }
+  void clear() const { std::fill_n(seen, word_count, std::uint64_t{0}); }
   // The entry; `is_new`: it holds nothing yet.
   Entry& at(std::size_t a, std::size_t b, bool are_one, bool& is_new) const {
     const std::size_t i = place(a, b, are_one);

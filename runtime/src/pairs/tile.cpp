@@ -42,7 +42,7 @@ HWY_INLINE void test_pairs(const Tile& tile, const ListedPair* pairs, hn::Vec<Fl
 // Removes unwanted pairs from the candidates of a group of strips. Returns one bit per strip, set if any candidate
 // remains: strips without one are skipped.
 HWY_INLINE std::uint64_t keep_wanted(const std::uint16_t* wanted, std::uint16_t* candidates) {
-  const hn::ScalableTag<std::uint16_t> kStrips;
+  constexpr hn::ScalableTag<std::uint16_t> kStrips;
   constexpr std::size_t kLanes = hn::MaxLanes(kStrips);
   std::uint64_t any = 0;
   for (std::size_t i = 0; i < kStripGroup; i += kLanes) {
@@ -56,7 +56,7 @@ HWY_INLINE std::uint64_t keep_wanted(const std::uint16_t* wanted, std::uint16_t*
 }
 
 HWY_INLINE void clear_group(std::uint16_t* candidates) {
-  const hn::ScalableTag<std::uint16_t> kStrips;
+  constexpr hn::ScalableTag<std::uint16_t> kStrips;
   for (std::size_t i = 0; i < kStripGroup; i += hn::MaxLanes(kStrips)) {
     hn::Store(hn::Zero(kStrips), kStrips, candidates + i);
   }

@@ -55,7 +55,8 @@ double Visibility::best_cosine(const Segment3& segment, const Double3 (&axes)[3]
   }
   double best = is_free({from, free}) ? cosine_of(free) : -1;
   for (int k = 0; k < 27; ++k) {
-    Double3 direction = double(k % 3 - 1) * axes[0] + (double(k / 3 % 3 - 1) * axes[1] + double(k / 9 - 1) * axes[2]);
+    const int u = k % 3 - 1, v = k / 3 % 3 - 1, w = k / 9 - 1;
+    Double3 direction = double(u) * axes[0] + (double(v) * axes[1] + double(w) * axes[2]);
     if (normalize(direction) && cosine_of(direction) > best && is_free({from, direction})) {
       best = cosine_of(direction);
       free = direction;
