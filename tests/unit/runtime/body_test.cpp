@@ -15,6 +15,7 @@
 #include "counting_new.h"
 #include "jobs.h"
 #include "palette.h"
+#include "random_poses.h"
 #include "tiny_skin.h"
 
 namespace spherechain::test {
