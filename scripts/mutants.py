@@ -84,8 +84,8 @@ def sources_of(test):
     return found
 
 
-def mutants_of(sources, count, random_numbers):
-    """`count` mutants, as (source, line number, line after), spread over the sources."""
+def mutants_of(sources, random_numbers):
+    """All mutants in random order, as (source, line number, line after)."""
     places = []
     for source in sources:
         for number, line in enumerate((TREE / source).read_text().splitlines()):
@@ -117,7 +117,7 @@ def try_mutants(test, count, random_numbers):
         return 0, []
     seconds = 10 * (time.monotonic() - start) + 5
     tried, survivors = 0, []
-    for source, number, line in mutants_of(sources_of(test), count, random_numbers):
+    for source, number, line in mutants_of(sources_of(test), random_numbers):
         if tried == count:
             break
         path = TREE / source

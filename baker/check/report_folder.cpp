@@ -42,7 +42,7 @@ std::string strip(const EvaluatedClip& clip) {
   return base64(out);
 }
 
-// An event as the page has it: in letters that are few, for a library has many.
+// An event as pages have it, with shorter numbers: a library may have thousands of events.
 ordered_json page_event(const EvaluatedEvent& evaluated) {
   const Event& event = evaluated.event;
   ordered_json out = event_json(event);

@@ -28,7 +28,7 @@ void FilterSearch::look(int count, const std::function<Deformation(int)>& pose, 
   std::vector<std::vector<bool>> touching(kBlock);
   for (int start = 0; start < count; start += kBlock) {
     const int end = std::min(count, start + kBlock);
-    run_parallel(static_cast<std::size_t>(end - start), [&](std::size_t thread, std::size_t i) {
+    run_parallel(finders.size(), static_cast<std::size_t>(end - start), [&](std::size_t thread, std::size_t i) {
       std::vector<bool>& pairs = touching[i];
       pairs.assign(pair_count(), false);
       std::optional<TouchingParts>& finder = finders[thread];

@@ -74,7 +74,8 @@ std::vector<PosePenetration> FaultFinder::in_frames(const std::vector<double>& f
   for (const double frame : frames) now.emplace_back(frame, clip_.turns_at(frame, turns));
   const std::vector<double> again = changed(seen_, now);
   std::vector<std::vector<PosePenetration>> found(again.size());
-  run_parallel(again.size(), [&](std::size_t t, std::size_t i) { found[i] = look(players_[t], again[i], turns); });
+  run_parallel(players_.size(), again.size(),
+               [&](std::size_t t, std::size_t i) { found[i] = look(players_[t], again[i], turns); });
   for (std::size_t i = 0; i < again.size(); ++i) seen_[again[i]].found = std::move(found[i]);
   return found_in(seen_, frames);
 }
@@ -85,7 +86,7 @@ std::vector<std::vector<PosePenetration>> FaultFinder::in_poses(const std::vecto
   const PartPairBits asked = part_pairs(animated_.asset(), [&](std::uint32_t a, std::uint32_t b) {
     return a != b && (moves[a] != 0 || moves[b] != 0) && !left_out_.contains({a, b});
   });
-  run_parallel(poses.size(), [&](std::size_t t, std::size_t i) {
+  run_parallel(players_.size(), poses.size(), [&](std::size_t t, std::size_t i) {
     const BonePose bones(animated_.asset(), clip_.pose_of(poses[i].frame, poses[i].turns).deformation);
     players_[t].set_pose(bones.pose());
     for (const Penetration& one : players_[t].measure_quickly(&asked)) {
@@ -121,7 +122,7 @@ std::vector<PosePenetration> FaultFinder::between(const std::vector<int>& frames
   }
   const std::vector<double> again = changed(seen_between_, now);
   std::vector<std::vector<PosePenetration>> found(again.size());
-  run_parallel(again.size(),
+  run_parallel(players_.size(), again.size(),
                [&](std::size_t t, std::size_t i) { found[i] = look_after(t, static_cast<int>(again[i]), turns); });
   for (std::size_t i = 0; i < again.size(); ++i) seen_between_[again[i]].found = std::move(found[i]);
   return found_in(seen_between_, frames);

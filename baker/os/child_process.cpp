@@ -94,7 +94,7 @@ ChildProcess::ChildProcess(Kind kind, const std::function<void(int pipe)>& work)
   if (pid_ == 0) {
     ::close(own);
     become_child(kind, parent);
-    work(other);
+    [&]() noexcept { work(other); }();  // an exception must not unwind into the copy of this process
     ::_exit(0);
   }
   const int failure = errno;

@@ -12,16 +12,18 @@
 namespace spherechain::baker {
 
 std::size_t processor_count() {
-  cpu_set_t set;
+  cpu_set_t set;  // too small for a machine of more than 1,024 processors
   const bool is_known = ::sched_getaffinity(0, sizeof set, &set) == 0;
-  return std::max<std::size_t>(1, is_known ? static_cast<std::size_t>(CPU_COUNT(&set)) : 1);
+  return std::max<std::size_t>(
+      1, is_known ? static_cast<std::size_t>(CPU_COUNT(&set)) : std::thread::hardware_concurrency());
 }
 
 std::size_t thread_count() { return std::min<std::size_t>(processor_count(), 16); }
 
 // The threads end with the call: a process that is forked later has no half of a pool of threads.
-void run_parallel(std::size_t count, const std::function<void(std::size_t thread, std::size_t i)>& work) {
-  const std::size_t threads = std::min(thread_count(), count);
+void run_parallel(std::size_t threads_max, std::size_t count,
+                  const std::function<void(std::size_t thread, std::size_t i)>& work) {
+  const std::size_t threads = std::min(threads_max, count);
   if (threads == 0) return;
   constexpr std::size_t kRunsPerThread = 8;  // so that a thread with quick runs takes more of them
   const std::size_t run = (count + kRunsPerThread * threads - 1) / (kRunsPerThread * threads);

@@ -66,7 +66,7 @@ class WrapSearch {
       if (!best_ || i != best_->tried) passed_over.push_back(tried_[i]);
     }
     if (!best_) return reason_.value_or(no_body);
-    body_of(best_->wrap, character_, closing_);
+    report_wrap(best_->wrap, closing_);
     return SegmentedWrap{std::move(best_->regions), tried_[best_->tried].strategy};
   }
 
@@ -95,7 +95,7 @@ class WrapSearch {
     }
     constexpr double kThinGood = 0.02;
     const bool leaks = wrap->thin > kThinGood;
-    Attempt<Regions> regions = segment_by_shape(character_, body_of(*wrap, character_, closing_), settings_);
+    Attempt<Regions> regions = segment_by_shape(character_, body_of(*wrap, character_), settings_);
     if (!regions) {
       reason = regions.reason();
       if (!reason_) reason_ = reason;

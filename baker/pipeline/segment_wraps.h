@@ -20,7 +20,7 @@ struct SegmentedWrap {
 // True if the regions are what a character most likely has: a biped's, where the settings do not say another body.
 bool is_expected(const Regions& regions, const SegmentSettings& settings);
 
-// Segments wraps of the skin by their shape, finer and coarser ones, until one is good. The best
+// Segments wraps of the skin by their shape, finer and coarser ones, until one is good. The best one
 // is the body of the regions. `of_body` is the reason why the body itself has no regions, which says more than the
 // reasons of its wraps. The wraps that were not taken are added to `passed_over`.
 Attempt<SegmentedWrap> segment_wraps(const Character& character, const SegmentSettings& settings,

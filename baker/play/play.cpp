@@ -184,6 +184,7 @@ void AnimatedAsset::use_skin() {
 }
 
 void AnimatedAsset::use_rig(const std::vector<Joint>& joints) {
+  check_clusters();  // which have the weights
   bone_names_.clear();
   weights_ = weights_of(file_, character_);
   for (const Joint& joint : joints) bone_names_.push_back(joint.name);

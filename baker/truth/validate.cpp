@@ -114,7 +114,7 @@ Validation validate(const AnimatedAsset& animated, const ValidateSettings& setti
   std::vector<Frame> frames(static_cast<std::size_t>(animated.frame_count()));
   std::mutex mutex;
   int done = 0;
-  run_parallel(frames.size(), [&](std::size_t, std::size_t i) {
+  run_parallel(thread_count(), frames.size(), [&](std::size_t, std::size_t i) {
     frames[i] = validate_frame(context, static_cast<int>(i), observe);
     const std::lock_guard lock(mutex);
     progress(++done);

@@ -60,15 +60,18 @@ Attempt<Wrap> wrap_skin(const Mesh& skin, const WrapSize& size, ClosingReport& r
   return wrap;
 }
 
-BodyMesh body_of(const Wrap& wrap, const Character& character, ClosingReport& report) {
+BodyMesh body_of(const Wrap& wrap, const Character& character) {
+  return {wrap.surface, std::vector<Index>(wrap.surface.triangles.size(), kNoIndex),
+          std::vector<Index>(character.source_positions.size(), kNoIndex)};
+}
+
+void report_wrap(const Wrap& wrap, ClosingReport& report) {
   report.body = BodySource::kWrapped;
   report.alpha = 1 / wrap.size.fineness;
   report.offset = kOffset / wrap.size.fineness;
   report.thin = wrap.thin;
   report.holes_first = wrap.size.holes_first;
   report.triangles = wrap.surface.triangles.size();
-  return {wrap.surface, std::vector<Index>(wrap.surface.triangles.size(), kNoIndex),
-          std::vector<Index>(character.source_positions.size(), kNoIndex)};
 }
 
 }  // namespace spherechain::baker

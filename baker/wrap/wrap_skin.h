@@ -26,7 +26,9 @@ inline constexpr std::size_t kWrapTrianglesMax = 100'000;
 // Counts and times itself in `report`. There is no wrap of more than kWrapTrianglesMax triangles.
 Attempt<Wrap> wrap_skin(const Mesh& skin, const WrapSize& size, ClosingReport& report);
 
-// The wrap as a body, which `report` then says.
-BodyMesh body_of(const Wrap& wrap, const Character& character, ClosingReport& report);
+// The wrap as a body. It has no triangle of the source.
+BodyMesh body_of(const Wrap& wrap, const Character& character);
+// Says in `report` that the body is this wrap.
+void report_wrap(const Wrap& wrap, ClosingReport& report);
 
 }  // namespace spherechain::baker
