@@ -4,7 +4,9 @@
 #include <doctest/doctest.h>
 
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 using namespace spherechain::baker;
@@ -17,6 +19,7 @@ TEST_CASE("work in parallel is done once for each index, and no two threads shar
     run_parallel(kThreads, count, [&](std::size_t thread, std::size_t i) {
       shared += busy[thread]++ == 0 ? 0 : 1;
       ++done[i];
+      std::this_thread::sleep_for(std::chrono::microseconds(50));  // so that calls overlap
       --busy[thread];
     });
     CHECK(shared == 0);
