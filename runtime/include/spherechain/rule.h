@@ -4,8 +4,8 @@
 
 #include "spherechain/types.h"
 
-/* The class of an intersection, as a person would name it. The first class that applies is taken. SC_CLASS_DEEP_FOLD
- * and SC_CLASS_PENETRATION are faults. */
+/* The class of an intersection, as a person would name it. The first class that applies is taken, SC_CLASS_INSIDE
+ * before all. From SC_CLASS_DEEP_FOLD on they are faults. */
 SC_ENUM(sc_penetration_class){
     SC_CLASS_REST = 0,        /* the two spots touch in the rest pose, too */
     SC_CLASS_SHELL = 1,       /* another layer of the same place (a garment on the body), or most of it is hidden */
@@ -13,6 +13,7 @@ SC_ENUM(sc_penetration_class){
     SC_CLASS_FOLD = 3,        /* neighbours on the body meet near their joint: an elbow, a groin */
     SC_CLASS_DEEP_FOLD = 4,   /* a fold within one piece of skin that is deep: a fault */
     SC_CLASS_PENETRATION = 5, /* everything else: a fault */
+    SC_CLASS_INSIDE = 6,      /* the middle of the one part is inside the other: a fault */
 };
 
 /* How two body parts hang together. */
@@ -26,7 +27,7 @@ SC_ENUM(sc_relation){
 
 /* The measurements of two body parts that intersect. The class follows from them alone, so you can store them and
  * classify them again; in the ground it follows from the depth alone. A quick query (SC_DETAIL_QUICK) measures only as
- * much as its own rule needs. The measurements of SC_DETAIL_FULL fit any rule if `swallowed` is known, or if the rule
+ * much as its own rule needs. The measurements of SC_DETAIL_FULL fit any rule if `extent` is known, or if the rule
  * sets touch_depth. */
 typedef struct sc_measures {
   float depth;          /* > 0: the way out; the pose's units */
@@ -37,11 +38,14 @@ typedef struct sc_measures {
   float facing;         /* -1 to 1: 1 where the sides lie flat on each other */
   float rest_distance;  /* between the two spots at rest, a share of the height; infinite of two bodies */
   float thickness;      /* of the thinner part, there, in the pose's units; negative: not known */
-  float swallowed; /* depth / thickness * seen length / side of a square with the area of the smaller part; negative:
-                      not known, for the class does not depend on it */
-  float height, metre; /* how long the character's height and a metre are in the pose's units */
+  float extent;         /* depth / thickness * seen length / side of a square with the area of the smaller part;
+                           negative: not known, for the class does not depend on it */
+  float height, metre;  /* how long the character's height and a metre are in the pose's units */
   sc_relation relation;
   int32_t is_one_piece; /* 1: the two spots are of one piece of skin */
+  float swallowed;      /* 0 to 1: of the spheres' centres of `part` the share that is inside `other`; where that holds
+                           most of them, inside any part. 0 where they were not looked at */
+  int32_t through;      /* 1: `part` is inside, and its limb comes out again on the other side */
 } sc_measures;
 
 /* The limits of the classes. A fault is an intersection that a person would mend; sc_default_rule() was tuned on judged
@@ -54,8 +58,8 @@ typedef struct sc_rule {
   float touch_metres, touch_min, touch_max; /* skins up to this depth only touch: touch_metres, but not less than
                                                touch_min and not more than touch_max */
   float touch_times; /* an intersection up to so many times deeper is still a touch if it is no fold and its
-                        sc_measures.swallowed is below `swallowed` */
-  float swallowed;   /* touch: sc_measures.swallowed is below this, see touch_times */
+                        sc_measures.extent is below `extent` */
+  float extent;      /* touch: sc_measures.extent is below this, see touch_times */
   float at_rest;     /* rest: at least this share of the triangle pairs touches at rest */
   float hidden;      /* shell: less than this share of the line is visible */
   float shell;       /* shell: the two spots are on two pieces of skin, and closer than this at rest */
@@ -63,9 +67,10 @@ typedef struct sc_rule {
   float neighbours;  /* fold: two spots of any parts are closer than this at rest. A joint may lack a bone */
   float fold_facing; /* fold: the sides face each other more than this: a thigh lies flat on the abdomen */
   float deep_fold;   /* deep fold: a fold within one piece of skin is deeper than this */
+  float inside;      /* inside: at least this share of the part is swallowed */
 } sc_rule;
 
-#define SC_RULE_VERSION 2
+#define SC_RULE_VERSION 3
 
 #if defined(__cplusplus)
 extern "C" {
@@ -76,7 +81,7 @@ SPHERECHAIN_API sc_rule sc_default_rule(void) SC_NOEXCEPT;
 /* A pure function. `rule` null: sc_default_rule(). */
 SPHERECHAIN_API sc_penetration_class sc_classify(const sc_rule* rule, const sc_measures* measures) SC_NOEXCEPT;
 
-/* "rest", "shell", "touch", "fold", "deep_fold", "penetration"; never null. */
+/* "rest", "shell", "touch", "fold", "deep_fold", "penetration", "inside"; never null. */
 SPHERECHAIN_API const char* sc_penetration_class_name(sc_penetration_class kind) SC_NOEXCEPT;
 
 #if defined(__cplusplus)

@@ -8,6 +8,7 @@
 #include "runtime/src/base/pair_bits.h"
 #include "runtime/src/base/status.h"
 #include "runtime/src/clusters/set_up.h"
+#include "runtime/src/inside/inside_job.h"
 #include "runtime/src/penetrations/measure.h"
 #include "runtime/src/step/step_job.h"
 
@@ -22,7 +23,8 @@ constexpr std::size_t kPairsOfSphere = 16;  // a sphere touches so many others a
 std::size_t scratch_words_of(const sc_model& model, const sc_model& other, std::size_t max_triangles,
                              bool finds_steps) {
   const AssetView &a = view_of(model.asset), &b = view_of(other.asset);
-  std::size_t words = std::max({skin_scratch_words(a), body_scratch_words(a, b), body_scratch_words(b, a),
+  std::size_t words = std::max({inside_scratch_words(a, a), inside_scratch_words(a, b), inside_scratch_words(b, a),
+                                skin_scratch_words(a), body_scratch_words(a, b), body_scratch_words(b, a),
                                 measure_words(a, a, true, max_triangles), measure_words(a, b, false, max_triangles),
                                 measure_words(b, a, false, max_triangles), floor_scratch_words(&model.asset)});
   if (finds_steps) {
@@ -56,6 +58,9 @@ std::size_t lay_out(sc_body& body, const sc_body_def& def, std::uint64_t* words)
   memory.take(body.contact_spheres, max_triangles);
   memory.take(body.triangles, max_triangles);
   memory.take(body.part_pairs, words_for(parts));
+  memory.take(body.inside[0], spheres);
+  memory.take(body.inside[1], view_of(other.asset).spheres().size);
+  memory.take(body.other_spheres, view_of(other.asset).spheres().size);
   for (Span<sc_penetration>& list : body.penetrations) {
     memory.take(list, def.max_penetrations > 0 ? def.max_penetrations : kPenetrations);
   }

@@ -3,16 +3,19 @@
 #include "runtime/src/bodies/body.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "runtime/src/base/pair_bits.h"
 #include "runtime/src/base/status.h"
 #include "runtime/src/clusters/set_up.h"
 #include "runtime/src/contacts/contact_jobs.h"
 #include "runtime/src/contacts/part_table.h"
+#include "runtime/src/inside/inside_job.h"
 #include "runtime/src/pairs/detect_job.h"
 #include "runtime/src/penetrations/measure.h"
 #include "runtime/src/penetrations/penetration_jobs.h"
 #include "runtime/src/refit/refit_job.h"
+#include "runtime/src/simd/simd.h"
 #include "runtime/src/step/step_job.h"
 
 namespace spherechain {
@@ -39,7 +42,7 @@ Status check_query(const sc_query* query, const sc_body* other) {
   if (query == nullptr) {
     return done();
   }
-  constexpr std::uint32_t kClasses = (1U << (SC_CLASS_PENETRATION + 1)) - 1;
+  constexpr std::uint32_t kClasses = (1U << (SC_CLASS_INSIDE + 1)) - 1;
   const bool has_parts = query->ignored_parts != nullptr || query->ignored_parts_of_other != nullptr;
   const bool is_known = (query->detail == SC_DETAIL_QUICK || query->detail == SC_DETAIL_FULL) &&
                         (query->classes == 0 || (query->classes & kClasses) != 0);
@@ -143,14 +146,103 @@ Status know_contacts(sc_body& body, const sc_body* other, const sc_query& query)
   return status;
 }
 
+// The spheres of the pose.
+Status know_spheres(sc_body& body, sc_radius radius, sc_target target) {
+  if (body.has_spheres && body.spheres_radius == radius) {
+    return done();
+  }
+  RefitJob refit;
+  refit.asset = &body.model->asset;
+  refit.pose = body.now.pose;
+  refit.radius = radius;
+  refit.target = target;
+  refit.spheres = body.spheres.data;
+  refit.sphere_capacity = body.spheres.size;
+  const Status status = refit.run();
+  body.has_spheres = status == SC_OK;
+  body.spheres_radius = radius;
+  return status;
+}
+
+// SC_OVERFLOW: not all pairs are listed.
+Status pair_spheres(sc_body& body, const sc_query& query, sc_radius radius, DetectJob& job) {
+  const Status status = know_spheres(body, radius, query.target);
+  if (status != SC_OK) {
+    return status;
+  }
+  job.asset = &body.model->asset;
+  job.spheres = body.spheres.data;
+  job.sphere_count = body.spheres.size;
+  job.radius = radius;
+  job.target = query.target;
+  job.filter = query.filter;
+  job.table = query.filter == nullptr && radius == SC_RADIUS_DETECT ? body.model->detect_table : nullptr;
+  job.pairs = body.sphere_pairs.data;
+  job.pair_capacity = body.sphere_pairs.size;
+  return job.run();
+}
+
+// Finds the spheres that are inside another part, or inside the other body. Profile `paper` has no spheres of bones:
+// nothing is known then.
+Status find_insides(sc_body& body, const sc_body* other, const sc_query& query, MeasureJob& measure) {
+  InsideJob job;
+  DetectJob pairs;
+  const Status status = other == nullptr ? pair_spheres(body, query, SC_RADIUS_DETECT, pairs)
+                                         : know_spheres(body, SC_RADIUS_DETECT, query.target);
+  if (status == SC_NOT_IN_ASSET || (other == nullptr && query.scope == SC_SCOPE_NEIGHBOURS)) {
+    return done();
+  }
+  if (status != SC_OK && status != SC_OVERFLOW) {
+    return status;
+  }
+  if (!resolve_target(query.target, job.target)) {
+    return refuse(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET);
+  }
+  job.body = side_of(body, nullptr);
+  job.skin = other == nullptr ? job.body : side_of(*other, nullptr);
+  job.are_one = other == nullptr;
+  job.centers = {body.spheres.data, body.spheres.size};
+  job.pairs = {pairs.pairs, std::min(pairs.pair_count, pairs.pair_capacity)};
+  job.has_all_pairs = status == SC_OK;
+  job.scratch = body.scratch;
+  job.part = body.inside[0];
+  job.run();
+  measure.inside_a = job.part.data;
+  if (other == nullptr) {
+    return done();
+  }
+  RefitJob refit;
+  refit.asset = &other->model->asset;
+  refit.pose = other->now.pose;
+  refit.target = query.target;
+  refit.spheres = body.other_spheres.data;
+  refit.sphere_capacity = body.other_spheres.size;
+  const Status of_other = refit.run();
+  if (of_other == SC_NOT_IN_ASSET) {
+    return done();
+  }
+  if (of_other != SC_OK) {
+    return of_other;
+  }
+  const std::size_t count = asset_of(*other).spheres().size;
+  std::swap(job.body, job.skin);
+  job.centers = {body.other_spheres.data, count};
+  job.part = {body.inside[1].data, count};
+  job.run();
+  measure.inside_b = job.part.data;
+  return done();
+}
+
 std::uint32_t classes_of(const sc_query& query) {
-  constexpr std::uint32_t kFaults = 1U << SC_CLASS_DEEP_FOLD | 1U << SC_CLASS_PENETRATION;
+  constexpr std::uint32_t kFaults = 1U << SC_CLASS_DEEP_FOLD | 1U << SC_CLASS_PENETRATION | 1U << SC_CLASS_INSIDE;
   return query.classes == 0 ? kFaults : query.classes;
 }
 
 // Measures the contacts that the body holds, beside what the list has already.
 template <typename Job>
-Status run_penetrations(sc_body& body, const sc_query& query, Span<Penetration> list, std::size_t& total, Job& job) {
+Status run_penetrations(sc_body& body, const sc_query& query, const MeasureJob& insides, Span<Penetration> list,
+                        std::size_t& total, Job& job) {
+  static_cast<MeasureJob&>(job) = insides;
   job.target = query.target;
   job.contacts = body.contacts.triangles;
   job.contact_count = body.contacts.triangle_count;
@@ -169,8 +261,8 @@ Status run_penetrations(sc_body& body, const sc_query& query, Span<Penetration> 
   return status == SC_OVERFLOW ? done() : status;
 }
 
-Status measure_contacts(sc_body& body, const sc_body* other, const sc_query& query, Span<Penetration> list,
-                        std::size_t& total) {
+Status measure_contacts(sc_body& body, const sc_body* other, const sc_query& query, const MeasureJob& insides,
+                        Span<Penetration> list, std::size_t& total) {
   if (other == nullptr) {
     PenetrationJob job;
     job.asset = &body.model->asset;
@@ -178,7 +270,7 @@ Status measure_contacts(sc_body& body, const sc_body* other, const sc_query& que
     job.skin_table = body.model->skin_table;
     job.scope = query.scope;
     job.filter = query.filter;
-    return run_penetrations(body, query, list, total, job);
+    return run_penetrations(body, query, insides, list, total, job);
   }
   const std::size_t words = measure_words(asset_of(body), asset_of(*other), false, body.contacts.triangle_count);
   const Status room = check_room(body, *other, words);
@@ -188,12 +280,13 @@ Status measure_contacts(sc_body& body, const sc_body* other, const sc_query& que
   BodyPenetrationJob job;
   job.a = side_of(body, nullptr);
   job.b = side_of(*other, nullptr);
-  return run_penetrations(body, query, list, total, job);
+  return run_penetrations(body, query, insides, list, total, job);
 }
 
 // Where there is no room for all triangles: as many pairs of parts at a time as there is room for.
-Status measure_in_rounds(sc_body& body, const sc_body* other, const sc_query& query, Span<Penetration> list,
-                         std::size_t& total) {
+Status measure_in_rounds(sc_body& body, const sc_body* other, const sc_query& query, MeasureJob& insides,
+                         Span<Penetration> list, std::size_t& total) {
+  const std::int32_t adds_enclosed = std::exchange(insides.adds_enclosed, 0);
   const std::size_t part_count = body.contacts.part_count;
   TableOfParts<PartContact> places;
   places.count_b = asset_of(other == nullptr ? body : *other).part_count();
@@ -209,7 +302,8 @@ Status measure_in_rounds(sc_body& body, const sc_body* other, const sc_query& qu
       body.part_pairs[place / 64] |= std::uint64_t{1} << place % 64;
     }
     Status status = find_contacts(body, other, query, true, true);
-    status = status == SC_OK ? measure_contacts(body, other, query, list, total) : status;
+    insides.adds_enclosed = next < part_count ? 0 : adds_enclosed;
+    status = status == SC_OK ? measure_contacts(body, other, query, insides, list, total) : status;
     if (status != SC_OK) {
       return status;
     }
@@ -271,10 +365,20 @@ sc_status sc_find_penetrations(sc_body* body, const sc_body* other, const sc_que
   if (status != SC_OK) {
     return status;
   }
+  MeasureJob insides;
+  status = find_insides(*body, other, of, insides);
+  if (status != SC_OK) {
+    return status;
+  }
+  insides.adds_enclosed = 1;
+  insides.met = body->contacts.parts;
+  insides.met_count = body->contacts.part_count;
+  insides.part_pairs = of.part_pairs == nullptr ? nullptr : pairs_asked(*body, other, of);
   const Span<Penetration> list = next_list(*body, of);
   std::size_t total = 0;
   const bool fits = body->contacts.triangle_total <= body->triangles.size;
-  status = fits ? measure_contacts(*body, other, of, list, total) : measure_in_rounds(*body, other, of, list, total);
+  status = fits ? measure_contacts(*body, other, of, insides, list, total)
+                : measure_in_rounds(*body, other, of, insides, list, total);
   if (status == SC_OK) {
     finish(*body, list, total, *found);
   }
@@ -290,32 +394,8 @@ sc_status sc_find_sphere_pairs(sc_body* body, const sc_query* query, sc_sphere_p
   if (of.radius != SC_RADIUS_DETECT && of.radius != SC_RADIUS_FIT) {
     return refuse(SC_BAD_VALUE, SC_FIELD_RADIUS);
   }
-  if (!body->has_spheres || body->spheres_radius != of.radius) {
-    RefitJob refit;
-    refit.asset = &body->model->asset;
-    refit.pose = body->now.pose;
-    refit.radius = of.radius;
-    refit.target = of.target;
-    refit.spheres = body->spheres.data;
-    refit.sphere_capacity = body->spheres.size;
-    status = refit.run();
-    body->has_spheres = status == SC_OK;
-    body->spheres_radius = of.radius;
-    if (status != SC_OK) {
-      return status;
-    }
-  }
   DetectJob job;
-  job.asset = &body->model->asset;
-  job.spheres = body->spheres.data;
-  job.sphere_count = body->spheres.size;
-  job.radius = of.radius;
-  job.target = of.target;
-  job.filter = of.filter;
-  job.table = of.filter == nullptr && of.radius == SC_RADIUS_DETECT ? body->model->detect_table : nullptr;
-  job.pairs = body->sphere_pairs.data;
-  job.pair_capacity = body->sphere_pairs.size;
-  status = job.run();
+  status = pair_spheres(*body, of, of.radius, job);
   if (status != SC_OK && status != SC_OVERFLOW) {
     return status;
   }

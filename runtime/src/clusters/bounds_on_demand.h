@@ -61,6 +61,14 @@ inline HWY_NOINLINE void bound_spheres(const PosedClusters& posed) {
   }
 }
 
+// All of the spheres' boxes.
+HWY_INLINE void bound(const PosedClusters& posed) {
+  if (!posed.has_hulls) {
+    bound_clusters(posed, 0, posed.sphere_count);
+  }
+  bound_spheres(posed);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();

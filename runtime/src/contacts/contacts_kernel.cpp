@@ -14,7 +14,7 @@
 #define HWY_TARGET_INCLUDE "runtime/src/contacts/contacts_kernel.cpp"
 #include "runtime/src/clusters/bounds_of_two.h"
 #include "runtime/src/clusters/bounds_on_demand.h"
-#include "runtime/src/contacts/blocks.h"
+#include "runtime/src/clusters/blocks.h"
 #include "runtime/src/contacts/pair_list.h"
 #include "runtime/src/contacts/single_precision.h"
 #include "runtime/src/simd/highway.h"
@@ -265,13 +265,6 @@ HWY_NOINLINE void pair_spheres(const Bodies& bodies, SpherePairs& spheres, Clust
                  collector);
   }
   spheres.count = 0;
-}
-
-HWY_INLINE void bound(const PosedClusters& posed) {
-  if (!posed.has_hulls) {
-    bound_clusters(posed, 0, posed.sphere_count);
-  }
-  bound_spheres(posed);
 }
 
 // All pairs of the scope; or of each sphere of one body with each of the other.

@@ -10,7 +10,7 @@
 #endif
 
 #include "runtime/src/clusters/posed_clusters.h"
-#include "runtime/src/contacts/blocks.h"
+#include "runtime/src/clusters/blocks.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

@@ -38,6 +38,7 @@ class Sweep {
  public:
   // `gap`: free places shorter than that do not end the way.
   Sweep(const Skins& skins, const PairRule& rule, double gap) : skins_(skins), rule_(rule), gap_(gap) {}
+  void set_gap(double gap) { gap_ = gap; }
   void take(WordMemory& memory, const SkinSizes& a, const SkinSizes& b);
   // Call it once, before anything else.
   void clear();

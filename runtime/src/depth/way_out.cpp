@@ -201,4 +201,18 @@ Exit steady_exit(Sweep& sweep, const Contour& contour, const ExitSettings& setti
   return search.best();
 }
 
+Exit parting_exit(Sweep& sweep, const Double3& wanted) {
+  const Contour none;
+  Search search(sweep, none, 1, true);
+  sweep.keep_near(HUGE_VAL);
+  for (int k = 0; k < 27; ++k) {
+    search.refine({double(k % 3 - 1), double(k / 3 % 3 - 1), double(k / 9 - 1)}, 0);
+  }
+  Double3 direction = wanted;
+  if (normalize(direction)) {
+    search.prefer(direction);
+  }
+  return search.best();
+}
+
 }  // namespace spherechain

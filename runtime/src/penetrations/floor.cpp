@@ -181,7 +181,7 @@ class Measurer {
     out.measures.contour_length = static_cast<float>(below.contour_length);
     out.measures.visible = 1;
     out.measures.rest_distance = HUGE_VALF;
-    out.measures.thickness = out.measures.swallowed = -1;
+    out.measures.thickness = out.measures.extent = -1;
     out.measures.height = static_cast<float>(height);
     out.measures.metre = static_cast<float>(metre);
     out.measures.relation = SC_RELATION_TWO_BODIES;

@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "runtime/src/base/status.h"
+#include "runtime/src/contacts/part_table.h"
 #include "runtime/src/depth/way_out.h"
+#include "runtime/src/inside/containment.h"
 #include "runtime/src/penetrations/rule.h"
 #include "runtime/src/penetrations/visibility.h"
 
@@ -17,6 +19,7 @@ namespace {
 constexpr double kGapMetres = 0.0006, kGapMax = 0.001;  // shorter free places on the way are none
 constexpr double kNear = 0.006;
 constexpr double kClearance = 3e-4;
+constexpr double kFar = 100;                                // no pose is as large
 constexpr std::uint64_t kCovered = std::uint64_t{1} << 31;  // bit of a contact's place in its list
 constexpr double kAreaError = 0.03;  // if the contour has another area than the skin inside, the volume is not known
 
@@ -58,7 +61,10 @@ class Measurer {
         height_(rest_height_ * scale_of(*in.a.asset, in.a.pose)),
         metre_(height_ / rest_height_ / double{in.a.asset->info().metres_per_unit}),
         memory_(in.are_one),
-        sweep_(memory_.skins, in.rule, std::min(kGapMetres * metre_, kGapMax * height_)) {
+        core_a_(*in.a.asset, surface_a_, in.inside_a),
+        core_b_(*in.b.asset, surface_b_, in.are_one ? in.inside_a : in.inside_b),
+        gap_(std::min(kGapMetres * metre_, kGapMax * height_)),
+        sweep_(memory_.skins, in.rule, gap_) {
     memory_.own.surface = in.a.surface;
     memory_.other.surface = in.b.surface;
     memory_.lay_out(in.a.asset->skin().sizes, in.b.asset->skin().sizes, in.contacts.size, in.scratch, sweep_);
@@ -66,12 +72,11 @@ class Measurer {
 
   Status run(std::size_t& found) {
     found = in_.kept;
-    if (in_.contacts.size == 0) {
-      return done();
+    if (in_.contacts.size > 0) {
+      memory_.contour.clear(memory_.skins.triangle_count());
+      sweep_.clear();
+      pose_skins();
     }
-    memory_.contour.clear(memory_.skins.triangle_count());
-    sweep_.clear();
-    pose_skins();
     const std::size_t count = sort_segments();
     for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
       while (end < count && memory_.keys[end] >> 32 == memory_.keys[begin] >> 32) {
@@ -88,6 +93,12 @@ class Measurer {
         keep_worst(in_.out, one, found);
       }
       ++found;
+    }
+    if (in_.adds_enclosed && in_.out.size > 0 && (in_.classes >> SC_CLASS_INSIDE & 1) != 0) {
+      add_enclosed(core_a_, false, found);
+      if (!in_.are_one) {
+        add_enclosed(core_b_, true, found);
+      }
     }
     if (in_.out.size == 0 || found <= in_.out.size) {
       return done();
@@ -223,6 +234,8 @@ class Measurer {
     Contour contour;  // of what a person sees
     bool swaps;       // b is named first
     double side;      // of a square like the smaller part
+    double swallowed = 0;
+    bool passes_through = false;
   };
 
   // `seen`: how many of the segments, the first, are of outer layers.
@@ -234,7 +247,83 @@ class Measurer {
     const int mobility_a = in_.a.asset->part(out.a).mobility, mobility_b = in_.b.asset->part(out.b).mobility;
     out.swaps =
         in_.are_one && out.a != out.b && (mobility_b > mobility_a || (mobility_b == mobility_a && area_b < area_a));
+    set_swallowed(out);
     out.side = std::min(scale_of_a() * std::sqrt(area_a), scale_of_b() * std::sqrt(area_b));
+    return out;
+  }
+
+  // Of two parts of one body the one is named first that is inside the other.
+  void set_swallowed(TwoParts& parts) const {
+    const double a = core_a_.swallowed(parts.a, parts.b), b = core_b_.swallowed(parts.b, parts.a);
+    const double limit = double{in_.limits.inside};
+    if (in_.are_one && std::max(a, b) >= limit && a != b) {
+      parts.swaps = b > a;
+    }
+    const bool is_of_b = in_.are_one ? parts.swaps : b > a;
+    parts.swallowed = is_of_b ? b : a;
+    parts.passes_through =
+        parts.swallowed >= limit && (is_of_b ? core_b_.passes_through(parts.b) : core_a_.passes_through(parts.a));
+  }
+
+  // Parts that are inside another, where no triangles meet.
+  void add_enclosed(const Containment& core, bool is_of_b, std::size_t& found) {
+    const AssetView& asset = is_of_b ? *in_.b.asset : *in_.a.asset;
+    for (std::size_t part = 0; part < asset.part_count(); ++part) {
+      const Containment::Holder holder = core.holder_of(part);
+      if (holder.part == kOutside || holder.share < double{in_.limits.inside}) {
+        continue;
+      }
+      TwoParts parts{};
+      parts.a = in_.are_one || is_of_b ? holder.part : part;
+      parts.b = in_.are_one || is_of_b ? part : holder.part;
+      parts.swaps = in_.are_one;
+      if (is_wanted(parts)) {
+        parts.swallowed = holder.share;
+        parts.passes_through = core.passes_through(part);
+        keep_worst(in_.out, measure_enclosed(parts, in_.are_one || is_of_b), found);
+        ++found;
+      }
+    }
+  }
+
+  // Have they no contact, and does the query ask about them?
+  bool is_wanted(const TwoParts& parts) const {
+    const std::size_t a = in_.are_one ? std::min(parts.a, parts.b) : parts.a;
+    const std::size_t b = in_.are_one ? std::max(parts.a, parts.b) : parts.b;
+    const bool have_met = std::any_of(in_.met.begin(), in_.met.end(),
+                                      [&](const PartContact& met) { return met.part_a == a && met.part_b == b; });
+    TableOfParts<PartContact> places;
+    places.count_b = in_.b.asset->part_count();
+    const std::size_t place = places.place(a, b, in_.are_one);
+    return !have_met && (in_.part_pairs == nullptr || (in_.part_pairs[place / 64] >> place % 64 & 1) != 0);
+  }
+
+  // The way out is clear of all of the other part: nothing says on which side of it a free place is outside.
+  Penetration measure_enclosed(TwoParts& parts, bool is_of_b) {
+    if (in_.contacts.size == 0) {
+      sweep_.clear();
+    }
+    pose_all_skins();
+    Double3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high = -1.0 * low;
+    const PosedSkin& skin = is_of_b ? memory_.skins.b : memory_.skins.a;
+    for (const TriangleRun& run : runs_of(*skin.surface, is_of_b ? parts.b : parts.a)) {
+      const std::uint32_t c = run.cluster;
+      low = {std::min(low.x, double{skin.low[0][c]}), std::min(low.y, double{skin.low[1][c]}),
+             std::min(low.z, double{skin.low[2][c]})};
+      high = {std::max(high.x, double{skin.high[0][c]}), std::max(high.y, double{skin.high[1][c]}),
+              std::max(high.z, double{skin.high[2][c]})};
+    }
+    parts.contour.center = 0.5 * (low + high);
+    parts.contour.rest_distance = HUGE_VAL;
+    set_sides(parts.all, parts.contour.center, parts.a, parts.b);
+    Penetration out{};
+    out.part = static_cast<std::uint32_t>(parts.swaps ? parts.b : parts.a);
+    out.other = static_cast<std::uint32_t>(parts.swaps ? parts.a : parts.b);
+    sweep_.set_gap(kFar * height_);
+    out = describe(parts, parting_exit(sweep_, previous_direction(parts, out)), {0, 0}, nullptr);
+    sweep_.set_gap(gap_);
+    out.low = to_float(low);
+    out.high = to_float(high);
     return out;
   }
 
@@ -307,23 +396,27 @@ class Measurer {
                     static_cast<float>(height_),
                     static_cast<float>(metre_),
                     relation_of(parts.a, parts.b),
-                    contour.is_one_piece ? 1 : 0};
+                    contour.is_one_piece ? 1 : 0,
+                    static_cast<float>(parts.swallowed),
+                    parts.passes_through ? 1 : 0};
     if (known != nullptr) {
       out.measures.thickness = known->measures.thickness;
-      out.measures.swallowed = known->measures.swallowed;
-    } else if (depends_on_swallowed(in_.limits, out.measures)) {
+      out.measures.extent = known->measures.extent;
+    } else if (depends_on_extent(in_.limits, out.measures)) {
       const SkinPoint &a = parts.swaps ? out.deepest_other : out.deepest,
                       &b = parts.swaps ? out.deepest : out.deepest_other;
       const double thin = thickness_of(parts, exit.direction, a.position, b.position);
       out.measures.thickness = static_cast<float>(thin);
-      out.measures.swallowed = static_cast<float>(double{out.distance} / thin * seen.length / parts.side);
+      out.measures.extent = static_cast<float>(double{out.distance} / thin * seen.length / parts.side);
     }
     out.kind = sc_classify(&in_.limits, &out.measures);
     out.part = static_cast<std::uint32_t>(parts.swaps ? parts.b : parts.a);
     out.other = static_cast<std::uint32_t>(parts.swaps ? parts.a : parts.b);
     out.joint = static_cast<std::uint32_t>(in_.a.asset->part(out.part).bone);  // -1 is SC_NO_JOINT
     out.centre = to_float(contour.center);
-    set_box(parts.all, out);
+    if (parts.all.size > 0) {
+      set_box(parts.all, out);
+    }
     return out;
   }
 
@@ -332,9 +425,11 @@ class Measurer {
     // Triangles that just touch are clear of each other after any move: the least there is.
     out.distance = std::max(static_cast<float>(exit.way.depth), static_cast<float>(1e-7 * height_));
     out.direction = to_float(parts.swaps ? exit.direction : -1.0 * exit.direction);
-    const Segment3& any = parts.contour.segments[0];
-    out.deepest = point_of(memory_.skins.a, exit.way.a, exit.way.point_a, any.a);
-    out.deepest_other = point_of(memory_.skins.b, exit.way.b, exit.way.point_b, any.b);
+    const bool meet = parts.contour.segments.size > 0;
+    const std::uint32_t any_a = meet ? parts.contour.segments[0].a : runs_of(surface_a_, parts.a)[0].first;
+    const std::uint32_t any_b = meet ? parts.contour.segments[0].b : runs_of(surface_b_, parts.b)[0].first;
+    out.deepest = point_of(memory_.skins.a, exit.way.a, exit.way.point_a, any_a);
+    out.deepest_other = point_of(memory_.skins.b, exit.way.b, exit.way.point_b, any_b);
     if (parts.swaps) {
       std::swap(out.deepest, out.deepest_other);
     }
@@ -442,6 +537,8 @@ class Measurer {
   const Surface &surface_a_, &surface_b_;
   double rest_height_, height_, metre_;  // at rest; in the pose
   Memory memory_;
+  Containment core_a_, core_b_;
+  double gap_;
   Sweep sweep_;
   bool are_all_posed_ = false;
   bool has_outer_layers_ = false;  // of the two parts that are measured: covered triangles do not count

@@ -26,6 +26,10 @@ struct Meeting {
   Span<Penetration> out;
   std::uint32_t classes = ~std::uint32_t{0};  // a bit each: those that are listed and counted
   std::size_t kept = 0;                       // entries of `out` that are there already
+  const std::uint16_t *inside_a = nullptr, *inside_b = nullptr;
+  bool adds_enclosed = false;
+  Span<const PartContact> met{};
+  const std::uint64_t* part_pairs = nullptr;
 };
 
 // Is l worse than r? Faults first, by class, then the deeper one.

@@ -17,7 +17,16 @@ struct MeasureJob {
   // 1: along one direction, without volume and visibility, but for likely faults: these are measured in full, so that
   // both forms find the same faults.
   std::int32_t quick = 0;
-  const Rule* rule = nullptr;        // null: sc_default_rule()
+  const Rule* rule = nullptr;  // null: sc_default_rule()
+  // Of each sphere of the body, or of both, the part that holds its centre, as find_inside() says it; null: not known.
+  const std::uint16_t* inside_a = nullptr;
+  const std::uint16_t* inside_b = nullptr;
+  // 1: also parts that are inside another which they have no contact with: not those in `met`, all pairs of parts that
+  // have contacts, nor those that `part_pairs`, as of a contact job, leaves out.
+  std::int32_t adds_enclosed = 0;
+  const PartContact* met = nullptr;
+  std::size_t met_count = 0;
+  const std::uint64_t* part_pairs = nullptr;
   std::uint64_t* scratch = nullptr;  // penetration_scratch_words() words, or body_penetration_scratch_words()
   std::size_t scratch_words = 0;
   Penetration* penetrations = nullptr;  // out: sorted by the two parts, the lesser number first; null: count only

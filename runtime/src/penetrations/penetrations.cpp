@@ -62,6 +62,11 @@ Meeting meeting_of(const Job& job, const Meeting::Side& a, const Meeting::Side& 
   out.out = {job.penetrations, job.penetration_capacity};
   out.classes = job.classes == 0 ? out.classes : job.classes;
   out.kept = job.kept_count;
+  out.inside_a = job.inside_a;
+  out.inside_b = job.inside_b;
+  out.adds_enclosed = job.adds_enclosed != 0;
+  out.met = {job.met, job.met_count};
+  out.part_pairs = job.part_pairs;
   return out;
 }
 

@@ -15,7 +15,8 @@ constexpr Rule kDefault = [] {
   out.touch_min = 0.0019F;  // files without a unit make giants and dwarfs
   out.touch_max = 0.0066F;
   out.touch_times = 10;
-  out.swallowed = 0.25F;
+  out.inside = 0.6F;
+  out.extent = 0.25F;
   out.at_rest = 0.5F;
   out.hidden = 0.3F;
   out.shell = 0.035F;
@@ -27,6 +28,9 @@ constexpr Rule kDefault = [] {
 }();
 
 PenetrationClass classify(const Rule& rule, const Measures& of) {
+  if (of.swallowed >= rule.inside) {
+    return SC_CLASS_INSIDE;
+  }
   if (of.touching >= rule.at_rest) {
     return SC_CLASS_REST;
   }
@@ -43,7 +47,7 @@ PenetrationClass classify(const Rule& rule, const Measures& of) {
   }
   // A depth that the caller sets is a limit: nothing deeper is a touch.
   const bool may_touch = !(rule.touch_depth > 0) && depth < double{rule.touch_times} * touch;
-  return may_touch && !(of.swallowed >= rule.swallowed) ? SC_CLASS_TOUCH : SC_CLASS_PENETRATION;
+  return may_touch && !(of.extent >= rule.extent) ? SC_CLASS_TOUCH : SC_CLASS_PENETRATION;
 }
 
 }  // namespace
@@ -53,8 +57,8 @@ Status check_rule(const sc_rule* rule) {
     return done();
   }
   const float limits[] = {rule->touch_depth, rule->touch_metres, rule->touch_min, rule->touch_max, rule->touch_times,
-                          rule->swallowed,   rule->at_rest,      rule->hidden,    rule->shell,     rule->fold,
-                          rule->neighbours,  rule->fold_facing,  rule->deep_fold};
+                          rule->extent,      rule->at_rest,      rule->hidden,    rule->shell,     rule->fold,
+                          rule->neighbours,  rule->fold_facing,  rule->deep_fold, rule->inside};
   const bool are_finite = std::all_of(std::begin(limits), std::end(limits), [](float l) { return std::isfinite(l); });
   return rule->version == SC_RULE_VERSION && are_finite && rule->touch_depth >= 0 ? done()
                                                                                   : refuse(SC_BAD_VALUE, SC_FIELD_RULE);
@@ -77,10 +81,10 @@ bool is_fold(const Rule& rule, const Measures& of) {
   return (of.relation == SC_RELATION_SIBLINGS || lie_close) && of.rest_distance < rule.fold;
 }
 
-bool depends_on_swallowed(const Rule& rule, const Measures& of) {
+bool depends_on_extent(const Rule& rule, const Measures& of) {
   Measures all = of, none = of;
-  all.swallowed = 2 * rule.swallowed;
-  none.swallowed = 0;
+  all.extent = 2 * rule.extent;
+  none.extent = 0;
   return classify(rule, all) != classify(rule, none);
 }
 
@@ -97,8 +101,8 @@ sc_penetration_class sc_classify(const sc_rule* rule, const sc_measures* measure
 }
 
 const char* sc_penetration_class_name(sc_penetration_class kind) noexcept {
-  constexpr const char* kNames[] = {"rest", "shell", "touch", "fold", "deep_fold", "penetration"};
-  return kind >= 0 && kind <= SC_CLASS_PENETRATION ? kNames[kind] : "unknown";
+  constexpr const char* kNames[] = {"rest", "shell", "touch", "fold", "deep_fold", "penetration", "inside"};
+  return kind >= 0 && kind <= SC_CLASS_INSIDE ? kNames[kind] : "unknown";
 }
 
 }  // extern "C"

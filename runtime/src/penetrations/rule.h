@@ -12,7 +12,7 @@ Status check_rule(const sc_rule* rule);
 // The depth below which two skins just touch.
 double touch_depth_of(const Rule& rule, double metre, double height);
 bool is_fold(const Rule& rule, const Measures& of);
-// Does the class depend on `swallowed`, which is the dearest to measure?
-bool depends_on_swallowed(const Rule& rule, const Measures& of);
+// Does the class depend on `extent`, which is the dearest to measure?
+bool depends_on_extent(const Rule& rule, const Measures& of);
 
 }  // namespace spherechain

@@ -12,6 +12,7 @@
 #include "runtime/src/base/stream.h"
 #include "runtime/src/skin/covered.h"
 #include "runtime/src/skin/job_body.h"
+#include "runtime/src/skin/windings.h"
 
 namespace spherechain {
 namespace {
@@ -33,6 +34,7 @@ Header header_of(const AssetView& asset, const std::uint64_t* words) {
 // While the table is filled: where a vertex' bones, weights and morphs start; and the bones.
 struct VertexTable {
   Span<std::uint32_t> first_bones, first_weights, first_morphs, bones;
+  WindingScratch windings;
 };
 
 // Sets the table's arrays; of null words only counts them.
@@ -67,6 +69,11 @@ std::size_t lay_out(const AssetView& asset, std::uint64_t* words, Surface& out, 
   memory.take(out.hulls, sizes.hulls);
   memory.take(out.hull_points, 3 * sizes.hull_points);
   memory.take(out.hull_weights, sizes.hull_weights);
+  memory.take(out.facings, sizes.triangles);
+  memory.take(out.rest_windings, 3 * asset.spheres().size);
+  memory.take(out.sphere_parts, asset.spheres().size);
+  memory.take(vertices.windings.order, sizes.triangles);
+  memory.take(vertices.windings.pieces, sizes.vertices);
   memory.take(vertices.first_bones, sizes.vertices + 1);
   memory.take(vertices.first_weights, sizes.vertices);
   memory.take(vertices.first_morphs, sizes.vertices + 1);
@@ -109,6 +116,7 @@ class Filler {
       pair.a = pairs.next();
       pair.b = pairs.next();
     }
+    find_windings(asset_, out_, vertices_.windings);
   }
 
  private:

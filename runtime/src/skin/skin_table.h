@@ -89,6 +89,10 @@ struct Surface {
   Span<Hull> hulls;          // a sphere's
   Span<float> hull_points;   // of a hull all x, all y, all z
   Span<float> hull_weights;  // of a hull its first bone's of all points, its second's ...
+  // How often the skin winds around a point: see windings.h.
+  Span<std::int8_t> facings;        // of each triangle: -1 of a piece that is inside out at rest; 0: it does not count
+  Span<std::int8_t> rest_windings;  // around each sphere's centre at rest, as counted along x, y and z
+  Span<std::uint8_t> sphere_parts;  // the part that most of a sphere's triangles are of
 
   // The asset's own.
   Span<const float> rest_positions;             // x, y, z of each vertex

@@ -9,7 +9,7 @@
 #define SPHERECHAIN_STEP_MOVING_BLOCKS_H
 #endif
 
-#include "runtime/src/contacts/blocks.h"
+#include "runtime/src/clusters/blocks.h"
 #include "runtime/src/contacts/single_precision.h"
 #include "runtime/src/step/moving_skin.h"
 

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "runtime/src/skin/windings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "runtime/src/base/double3.h"
+#include "runtime/src/triangles/crossing.h"
+
+namespace spherechain {
+namespace {
+
+using Welds = std::uint32_t[3];
+
+// A triangle's corners by their places at rest, ascending.
+void sorted_welds(const Surface& surface, std::uint32_t triangle, Welds& out) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    out[k] = surface.welds[surface.triangle_vertices[3 * std::size_t{triangle} + k]];
+  }
+  std::sort(out, out + 3);
+}
+
+void corners_at_rest(const Surface& surface, std::size_t triangle, float (&out)[3][3]) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::memcpy(out[k], surface.rest_positions.data + 3 * std::size_t{surface.triangle_vertices[3 * triangle + k]},
+                sizeof out[k]);
+  }
+}
+
+// Of triangles that have the same corners, as front and back of a double-sided skin, the source's first counts.
+void drop_doubles(const Surface& surface, Span<std::uint32_t> order) {
+  std::fill(surface.facings.begin(), surface.facings.end(), std::int8_t{1});
+  for (std::uint32_t t = 0; t < order.size; ++t) {
+    order[t] = t;
+  }
+  const auto is_before = [&](std::uint32_t l, std::uint32_t r) {
+    Welds of_l, of_r;
+    sorted_welds(surface, l, of_l);
+    sorted_welds(surface, r, of_r);
+    const int by_corners = std::lexicographical_compare(of_l, of_l + 3, of_r, of_r + 3)   ? -1
+                           : std::lexicographical_compare(of_r, of_r + 3, of_l, of_l + 3) ? 1
+                                                                                          : 0;
+    return by_corners != 0 ? by_corners < 0 : surface.triangles[l] < surface.triangles[r];
+  };
+  std::sort(order.begin(), order.end(), is_before);
+  for (std::size_t i = 1; i < order.size; ++i) {
+    Welds before, own;
+    sorted_welds(surface, order[i - 1], before);
+    sorted_welds(surface, order[i], own);
+    if (std::equal(before, before + 3, own)) {
+      surface.facings[order[i]] = 0;
+    }
+  }
+}
+
+// A piece that encloses a negative volume, seen from its middle, is inside out: its triangles count the other way
+// round.
+void turn_pieces(const Surface& surface, Span<PieceSum> pieces) {
+  std::fill(pieces.begin(), pieces.end(), PieceSum{});
+  const auto for_all = [&](const auto& visit) {
+    for (std::size_t t = 0; t < surface.triangles.size; ++t) {
+      float at[3][3];
+      corners_at_rest(surface, t, at);
+      Double3 p[3];
+      for (std::size_t k = 0; k < 3; ++k) {
+        p[k] = {double{at[k][0]}, double{at[k][1]}, double{at[k][2]}};
+      }
+      visit(t, pieces[surface.pieces[surface.triangle_vertices[3 * t]]], p, cross(p[1] - p[0], p[2] - p[0]));
+    }
+  };
+  for_all([&](std::size_t, PieceSum& piece, const Double3(&p)[3], const Double3& normal) {
+    const double area = length(normal);
+    const Double3 middle = p[0] + (p[1] + p[2]);
+    piece.middle[0] += area * middle.x / 3;
+    piece.middle[1] += area * middle.y / 3;
+    piece.middle[2] += area * middle.z / 3;
+    piece.area += area;
+  });
+  for_all([&](std::size_t t, PieceSum& piece, const Double3(&p)[3], const Double3& normal) {
+    if (surface.facings[t] != 0 && piece.area > 0) {
+      piece.volume +=
+          dot(normal, p[0]) -
+          (normal.x * piece.middle[0] + normal.y * piece.middle[1] + normal.z * piece.middle[2]) / piece.area;
+    }
+  });
+  for (std::size_t t = 0; t < surface.triangles.size; ++t) {
+    if (pieces[surface.pieces[surface.triangle_vertices[3 * t]]].volume < 0) {
+      surface.facings[t] = static_cast<std::int8_t>(-surface.facings[t]);
+    }
+  }
+}
+
+// Does the line meet a cluster's box at rest?
+bool meets(const Surface& surface, std::size_t cluster, const float (&from)[3], std::size_t axis) {
+  const BoxLanes& boxes = surface.boxes[cluster / 8];
+  const std::size_t k = cluster % 8;
+  const float middle[3] = {boxes.x[k], boxes.y[k], boxes.z[k]};
+  const float half[3] = {boxes.half_x[k], boxes.half_y[k], boxes.half_z[k]};
+  for (const std::size_t other : {(axis + 1) % 3, (axis + 2) % 3}) {
+    const double rounding = 1e-6 * (std::abs(double{middle[other]}) + double{half[other]});
+    if (std::abs(double{from[other]} - double{middle[other]}) > double{half[other]} + rounding) {
+      return false;
+    }
+  }
+  return true;
+}
+
+int winding_at_rest(const Surface& surface, const float (&from)[3], std::size_t axis) {
+  int out = 0;
+  for (std::size_t c = 0; c < surface.clusters.size; ++c) {
+    if (!meets(surface, c, from, axis)) {
+      continue;
+    }
+    const Cluster& cluster = surface.clusters[c];
+    for (std::size_t t = cluster.first_triangle; t < cluster.first_triangle + std::size_t{cluster.triangle_count};
+         ++t) {
+      float corners[3][3];
+      corners_at_rest(surface, t, corners);
+      const Crossing crossing = cross_line(corners, from, axis);
+      out += crossing.height > 0 ? crossing.side * surface.facings[t] : 0;
+    }
+  }
+  return std::max(-127, std::min(out, 127));
+}
+
+// The part that most of a sphere's triangles are of.
+std::uint8_t part_of(const Surface& surface, std::size_t sphere, std::uint32_t (&counts)[256]) {
+  std::fill(counts, counts + 256, 0U);
+  std::uint8_t most = 0;
+  for (std::size_t c = surface.first_clusters[sphere]; c < surface.first_clusters[sphere + 1]; ++c) {
+    const Cluster& cluster = surface.clusters[c];
+    for (std::size_t t = cluster.first_triangle; t < cluster.first_triangle + std::size_t{cluster.triangle_count};
+         ++t) {
+      ++counts[surface.parts[t]];
+    }
+  }
+  for (std::size_t part = 1; part < 256; ++part) {
+    most = counts[part] > counts[most] ? static_cast<std::uint8_t>(part) : most;
+  }
+  return most;
+}
+
+}  // namespace
+
+void find_windings(const AssetView& asset, const Surface& surface, const WindingScratch& scratch) {
+  drop_doubles(surface, scratch.order);
+  turn_pieces(surface, scratch.pieces);
+  std::uint32_t counts[256];
+  for (std::size_t s = 0; s < asset.spheres().size; ++s) {
+    const Vec3& center = asset.spheres()[s].center;
+    const float from[3] = {center.x, center.y, center.z};
+    surface.sphere_parts[s] = part_of(surface, s, counts);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      surface.rest_windings[3 * s + axis] = static_cast<std::int8_t>(winding_at_rest(surface, from, axis));
+    }
+  }
+}
+
+}  // namespace spherechain
