@@ -18,6 +18,10 @@ std::string marks(const EvaluatedEvent& evaluated) {
   const auto add = [&](const std::string& text) { out += (out.empty() ? "  [" : ", ") + text; };
   const PenetrationClass kind = evaluated.event.kind;
   if (kind == SC_CLASS_DEEP_FOLD) add("deep fold");
+  if (kind == SC_CLASS_INSIDE) {
+    add(fmt::format("{:.0f} % inside{}", 100 * evaluated.event.swallowed,
+                    evaluated.event.passes_through ? " and out again" : ""));
+  }
   if (!is_fault(kind)) add(kind == SC_CLASS_REST ? "as at rest" : sc_penetration_class_name(kind));
   if (evaluated.before_mm >= 0) add(worse_text(evaluated));
   if (!evaluated.rule.empty()) add(evaluated.rule);

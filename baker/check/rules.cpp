@@ -141,7 +141,7 @@ std::vector<std::string> Rules::named_parts() const {
 }
 
 Severity Rules::severity(PenetrationClass kind) const {
-  return kind == SC_CLASS_PENETRATION ? penetration : kind == SC_CLASS_DEEP_FOLD ? deep_fold : Severity::kIgnore;
+  return kind >= SC_CLASS_PENETRATION ? penetration : kind == SC_CLASS_DEEP_FOLD ? deep_fold : Severity::kIgnore;
 }
 
 CheckConfig read_config(const std::string& text, const std::string& file, const CheckConfig& start,

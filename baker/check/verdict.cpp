@@ -100,7 +100,7 @@ void count(Summary& out, const EvaluatedClip& clip) {
     }
     ++out.events;
     if (!evaluated.is_open()) continue;
-    ++(evaluated.event.kind == SC_CLASS_PENETRATION ? out.penetrations : out.deep_folds);
+    ++(evaluated.event.kind == SC_CLASS_DEEP_FOLD ? out.deep_folds : out.penetrations);
     out.fresh += evaluated.state == EventState::kNew ? 1 : 0;
     out.worse += evaluated.before_mm >= 0 ? 1 : 0;
     out.accepted += evaluated.state == EventState::kAccepted ? 1 : 0;

@@ -19,6 +19,8 @@ struct Event {
   int first_place = 0, place = 0;          // of `from` and `deepest` among the frames that were looked at
   double depth_mm = 0, depth_percent = 0;  // percent of the character's height
   double volume_ml = -1;                   // -1: not known
+  double swallowed = 0;                    // the share of parts[0] that is inside parts[1]
+  bool passes_through = false;             // and comes out again
   Vec3 direction = Vec3::Zero();           // moving parts[0] by `depth_mm` along it frees it from parts[1]
   Vec3 point = Vec3::Zero();               // the point of parts[0] that is deepest; the pose's space, source units
   std::optional<Vec3> eye;                 // of a fault: from the point to an eye that sees it; unit length

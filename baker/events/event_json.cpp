@@ -24,8 +24,10 @@ ordered_json event_json(const Event& event) {
                    {"deepest", number_json(event.deepest)},
                    {"depth_mm", event.depth_mm},
                    {"depth_percent", event.depth_percent},
+                   {"swallowed", event.swallowed},
                    {"volume_ml", event.volume_ml >= 0 ? ordered_json(event.volume_ml) : ordered_json()},
                    {"direction", to_json(event.direction)}};
+  if (event.passes_through) out["through"] = true;
   if (event.eye) out["camera"] = {{"target", to_json(event.point)}, {"back", to_json(*event.eye)}};
   return out;
 }
@@ -43,6 +45,8 @@ ordered_json stored_event(const Event& event) {
           {"depth_mm", event.depth_mm},
           {"depth_percent", event.depth_percent},
           {"volume_ml", event.volume_ml},
+          {"swallowed", event.swallowed},
+          {"through", event.passes_through},
           {"direction", to_json(event.direction)},
           {"point", to_json(event.point)},
           {"eye", event.eye ? ordered_json(to_json(*event.eye)) : ordered_json()},
@@ -62,6 +66,8 @@ Event read_stored_event(const ordered_json& json) {
   json.at("depth_mm").get_to(event.depth_mm);
   json.at("depth_percent").get_to(event.depth_percent);
   json.at("volume_ml").get_to(event.volume_ml);
+  json.at("swallowed").get_to(event.swallowed);
+  json.at("through").get_to(event.passes_through);
   event.direction = read_vec3(json.at("direction"));
   event.point = read_vec3(json.at("point"));
   if (!json.at("eye").is_null()) event.eye = read_vec3(json.at("eye"));

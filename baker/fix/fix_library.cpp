@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 bool can_be_mended(const EvaluatedEvent& evaluated) {
   const Event& event = evaluated.event;
-  return evaluated.is_open() && evaluated.state != EventState::kAccepted && event.kind == SC_CLASS_PENETRATION &&
+  return evaluated.is_open() && evaluated.state != EventState::kAccepted && event.kind >= SC_CLASS_PENETRATION &&
          event.parts[0] != event.parts[1];
 }
 

@@ -62,7 +62,7 @@ double Goals::allowed(const PosePenetration& penetration) const {
   const WorkingEvent* event = event_at(place_of(penetration));
   if (event == nullptr) {
     const bool is_new =
-        penetration.found.kind == SC_CLASS_PENETRATION && penetration.found.part != penetration.found.other;
+        penetration.found.kind >= SC_CLASS_PENETRATION && penetration.found.part != penetration.found.other;
     if (is_new) return apart;
   } else if (event->is_open() && penetration.frame >= event->found.from && penetration.frame <= event->found.to) {
     return apart;

@@ -101,12 +101,15 @@ PartCounts PartContacts::add(int frame, const std::vector<Pair>& triangles,
     const bool fault = is_fault(found.kind);
     has_fault = has_fault || fault;
     if (fault) add_to_runs(contact.fault_runs, number, before);
-    if (std::pair(fault, mm_ * double{found.measures.depth}) >
-        std::pair(is_fault(contact.kind), contact.depth_mm_max)) {
+    const auto rank = [](PenetrationClass kind) { return is_fault(kind) ? kind : SC_CLASS_REST; };
+    if (std::pair(rank(found.kind), mm_ * double{found.measures.depth}) >
+        std::pair(rank(contact.kind), contact.depth_mm_max)) {
       contact.depth_mm_max = mm_ * double{found.measures.depth};
       contact.frame_of_depth_max = number;
       contact.direction = found.direction;
       contact.kind = found.kind;
+      contact.swallowed = double{found.measures.swallowed};
+      contact.passes_through = found.measures.through != 0;
     }
   }
   clip.fault_frames += is_own && has_fault ? 1 : 0;
@@ -151,10 +154,14 @@ std::string PartContacts::rows(const Clip& clip) const {
     const auto [first, second] = contact.parts;
     const auto& runs = contact.fault_runs;
     const char* unit = runs.size() == 1 && runs[0].first == runs[0].second ? "frame " : "frames ";
-    const char* fold = contact.kind == SC_CLASS_DEEP_FOLD ? "deep fold, " : "";
+    const std::string what = contact.kind == SC_CLASS_DEEP_FOLD ? "deep fold, "
+                             : contact.kind == SC_CLASS_INSIDE
+                                 ? fmt::format("{:.0f} % inside{}, ", 100 * contact.swallowed,
+                                               contact.passes_through ? " and out again" : "")
+                                 : "";
     const auto& [x, y, z] = contact.direction;
     cells.push_back({name(first), first == second ? "itself" : name(second), unit + runs_text(runs),
-                     fmt::format("{}{:.0f} mm deep at {}, out along ({:.2f}, {:.2f}, {:.2f})", fold,
+                     fmt::format("{}{:.0f} mm deep at {}, out along ({:.2f}, {:.2f}, {:.2f})", what,
                                  contact.depth_mm_max, frame_text(contact.frame_of_depth_max), x, y, z)});
   }
   std::string rest;
@@ -197,6 +204,8 @@ ordered_json PartContacts::json() const {
                           {"triangle_pairs_max", contact.triangle_pairs_max},
                           {"frame_of_max", number_json(contact.frame_of_max)},
                           {"class", sc_penetration_class_name(contact.kind)},
+                          {"swallowed", contact.swallowed},
+                          {"through", contact.passes_through},
                           {"depth_mm_max", contact.depth_mm_max},
                           {"frame_of_depth_max", number_json(contact.frame_of_depth_max)}});
     }

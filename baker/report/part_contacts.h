@@ -49,6 +49,8 @@ class PartContacts {
     double frame_of_depth_max = 0;
     spherechain::Vec3 direction{};
     PenetrationClass kind = SC_CLASS_REST;
+    double swallowed = 0;
+    bool passes_through = false;
   };
   using Contacts = std::map<std::pair<std::size_t, std::size_t>, Contact>;
   struct Clip {

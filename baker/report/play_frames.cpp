@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "baker/report/play_frames.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -53,22 +54,28 @@ ordered_json penetrations_json(const AnimatedAsset& animated, const std::vector<
                         {"weights", at.weights}};
   };
   const auto known = [](double value) { return value >= 0 ? ordered_json(value) : ordered_json(); };
+  std::vector<Penetration> worst_first = penetrations;
+  std::stable_sort(worst_first.begin(), worst_first.end(),
+                   [](const auto& l, const auto& r) { return l.kind > r.kind; });
   ordered_json out = ordered_json::array();
-  for (const Penetration& found : penetrations) {
+  for (const Penetration& found : worst_first) {
     const double ml = std::pow(mm / 10, 3) * double{found.measures.volume};
     out.push_back({{"parts", {contacts.name(found.part), contacts.name(found.other)}},
                    {"class", sc_penetration_class_name(found.kind)},
                    {"depth_mm", mm * double{found.measures.depth}},
+                   {"depth_percent", 100 * double{found.measures.depth} / double{found.measures.height}},
+                   {"swallowed", found.measures.swallowed},
                    {"direction", {found.direction.x, found.direction.y, found.direction.z}},
                    {"volume_ml", known(ml)},
                    {"visible", found.measures.visible},
                    {"contour_mm", mm * double{found.measures.contour_length}},
                    {"thickness_mm", known(mm * double{found.measures.thickness})},
-                   {"swallowed", known(double{found.measures.swallowed})},
+                   {"extent", known(double{found.measures.extent})},
                    {"touching", found.measures.touching},
                    {"facing", found.measures.facing},
                    {"rest_distance", found.measures.rest_distance},
                    {"deepest", {point(found.deepest), point(found.deepest_other)}}});
+    if (found.measures.through != 0) out.back()["through"] = true;
   }
   return out;
 }

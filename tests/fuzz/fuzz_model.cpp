@@ -211,8 +211,9 @@ class Asking {
   }
 
   void check(const Penetrations& found, const Query& query, const Body& body) {
-    const std::uint32_t classes =
-        query.classes == 0 ? 1U << SC_CLASS_DEEP_FOLD | 1U << SC_CLASS_PENETRATION : query.classes;
+    const std::uint32_t classes = query.classes == 0
+                                      ? 1U << SC_CLASS_DEEP_FOLD | 1U << SC_CLASS_PENETRATION | 1U << SC_CLASS_INSIDE
+                                      : query.classes;
     for (const Penetration& one : found) {
       c_.expect(is_part(one.part) && (is_part(one.other) || one.other == SC_FLOOR), "a penetration of no part");
       c_.expect((classes >> one.kind & 1) != 0, "a class that was not asked for");

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t kBones = 9, kSpheres = 30;
 constexpr Matrix kUnmoved{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-constexpr std::uint32_t kAllClasses = (1U << (SC_CLASS_PENETRATION + 1)) - 1;
+constexpr std::uint32_t kAllClasses = (1U << (SC_CLASS_INSIDE + 1)) - 1;
 
 // A band that winds through a box, whose bones go astray. The joints of its engine are in the reverse order.
 struct Winding {

@@ -21,7 +21,7 @@ Measures hand_in_thigh() {
   out.facing = 0.1F;
   out.visible = 1;
   out.depth = 0.05F;
-  out.swallowed = 1;
+  out.extent = 1;
   return out;
 }
 
@@ -47,9 +47,9 @@ TEST_CASE("a class changes at its limit, and what is measured beyond that change
   };
   Measures thin = hand_in_thigh();
   thin.depth = 0.02F;
-  thin.swallowed = 0.249F;
+  thin.extent = 0.249F;
   CHECK(classify(thin) == SC_CLASS_TOUCH);
-  thin.swallowed = 0.251F;
+  thin.extent = 0.251F;
   CHECK(classify(thin) == SC_CLASS_PENETRATION);
   for (const Row& row : rows) {
     Measures of = hand_in_thigh();
@@ -91,14 +91,14 @@ TEST_CASE("little that goes in touches up to ten times the depth, unless a depth
   limited.touch_depth = 0.02F;
   Measures of = hand_in_thigh();
   of.depth = 0.03F;
-  of.swallowed = 0.2F;
-  CHECK(depends_on_swallowed(rule, of));
+  of.extent = 0.2F;
+  CHECK(depends_on_extent(rule, of));
   CHECK(classify(of) == SC_CLASS_TOUCH);
   CHECK(classify(of, 0.02F) == SC_CLASS_PENETRATION);
-  CHECK_FALSE(depends_on_swallowed(limited, of));
+  CHECK_FALSE(depends_on_extent(limited, of));
   of.depth = 0.034F;
   CHECK(classify(of) == SC_CLASS_PENETRATION);
-  CHECK_FALSE(depends_on_swallowed(rule, of));
+  CHECK_FALSE(depends_on_extent(rule, of));
   // Files without a unit make giants and dwarfs: their touches are shares of the height.
   CHECK(touch_depth_of(rule, 1, 175) == doctest::Approx(0.0019 * 175));
   CHECK(touch_depth_of(rule, 1, 0.0175) == doctest::Approx(0.0066 * 0.0175));

@@ -89,7 +89,7 @@ void check_as_bodies(const spherechain::PenetrationJob& one, const spherechain::
     expected.measures.rest_distance = in_pose.rest_distance;
     expected.measures.touching = in_pose.touching;
     expected.measures.thickness = in_pose.thickness;
-    expected.measures.swallowed = in_pose.swallowed;
+    expected.measures.extent = in_pose.extent;
     CHECK(spherechain::test::same_bits(measured, {expected}));
   }
 }
