@@ -222,4 +222,24 @@ std::vector<Penetration> measure(BodyPenetrationJob job, Target target) {
   return measure_all(job, body_penetration_scratch_words(job.a.asset, job.b.asset, job.contact_count), target);
 }
 
+std::vector<std::uint16_t> find_inside(const Asset& asset, const Pose& pose, Target target) {
+  const Refitted spheres = refit(asset, pose, SC_RADIUS_DETECT, target);
+  const Detected pairs = detect(asset, spheres.spheres, SC_RADIUS_DETECT, target);
+  const PreparedSkin skin(asset);
+  std::vector<std::uint16_t> out(spheres.spheres.size());
+  std::vector<std::uint64_t> scratch(inside_scratch_words(view_of(asset), view_of(asset)));
+  std::vector<Pair> of_pairs = pairs.pairs;
+  InsideJob job;
+  job.body.asset = job.skin.asset = &asset;
+  job.body.pose = job.skin.pose = pose;
+  job.body.skin_table = job.skin.skin_table = skin.words.data();
+  resolve_target(target, job.target);
+  job.centers = {spheres.spheres.data(), spheres.spheres.size()};
+  job.pairs = {of_pairs.data(), of_pairs.size()};
+  job.scratch = scratch.data();
+  job.part = {out.data(), out.size()};
+  job.run();
+  return out;
+}
+
 }  // namespace spherechain::test

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <vector>
 
+#include "runtime/src/inside/inside_job.h"
 #include "runtime/src/pairs/detect_job.h"
 #include "runtime/src/penetrations/penetration_jobs.h"
 #include "runtime/src/refit/refit_job.h"
@@ -69,6 +70,9 @@ struct StepContacts {
   const StepContact* of(std::uint32_t part_a, std::uint32_t part_b) const;  // null: none
 };
 StepContacts find_contacts(StepJob job);
+
+// Of each sphere the part of the same body that holds its centre, or kOutside.
+std::vector<std::uint16_t> find_inside(const Asset& asset, const Pose& pose, Target target);
 
 // The same for the measure of contacts; nothing where it fails.
 std::vector<Penetration> measure(PenetrationJob job, Target target);

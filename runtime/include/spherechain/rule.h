@@ -13,7 +13,7 @@ SC_ENUM(sc_penetration_class){
     SC_CLASS_FOLD = 3,        /* neighbours on the body meet near their joint: an elbow, a groin */
     SC_CLASS_DEEP_FOLD = 4,   /* a fold within one piece of skin that is deep: a fault */
     SC_CLASS_PENETRATION = 5, /* everything else: a fault */
-    SC_CLASS_INSIDE = 6,      /* the middle of the one part is inside the other: a fault */
+    SC_CLASS_INSIDE = 6,      /* the middle of the one part is inside the other, or goes through it: a fault */
 };
 
 /* How two body parts hang together. */
@@ -45,7 +45,7 @@ typedef struct sc_measures {
   int32_t is_one_piece; /* 1: the two spots are of one piece of skin */
   float swallowed;      /* 0 to 1: of the spheres' centres of `part` the share that is inside `other`; where that holds
                            most of them, inside any part. 0 where they were not looked at */
-  int32_t through;      /* 1: `part` is inside, and its limb comes out again on the other side */
+  int32_t through;      /* 1: some of `part` is inside, and its limb comes out again on the other side */
 } sc_measures;
 
 /* The limits of the classes. A fault is an intersection that a person would mend; sc_default_rule() was tuned on judged
@@ -67,7 +67,7 @@ typedef struct sc_rule {
   float neighbours;  /* fold: two spots of any parts are closer than this at rest. A joint may lack a bone */
   float fold_facing; /* fold: the sides face each other more than this: a thigh lies flat on the abdomen */
   float deep_fold;   /* deep fold: a fold within one piece of skin is deeper than this */
-  float inside;      /* inside: at least this share of the part is swallowed */
+  float inside;      /* inside: at least this share of the part is swallowed; or it comes out again */
 } sc_rule;
 
 #define SC_RULE_VERSION 3

@@ -54,7 +54,7 @@ double Containment::swallowed(std::size_t part, std::size_t other) const {
   return static_cast<double>(held) / static_cast<double>(all);
 }
 
-bool Containment::passes_through(std::size_t part) const {
+bool Containment::passes_through(std::size_t part, std::size_t other) const {
   for (std::size_t c = 0; inside_ != nullptr && c < asset_.chain_count(); ++c) {
     std::size_t region = kOutside;
     enum { kBefore, kOut, kIn, kThrough } state = kBefore;
@@ -70,7 +70,7 @@ bool Containment::passes_through(std::size_t part) const {
       state = !is_in                                              ? (state == kIn        ? kThrough
                                                                      : state == kThrough ? kThrough
                                                                                          : kOut)
-              : state == kOut && surface_.sphere_parts[s] == part ? kIn
+              : state == kOut && surface_.sphere_parts[s] == part && inside_[s] == other ? kIn
                                                                   : state;
       if (state == kThrough) {
         return true;

@@ -19,8 +19,8 @@ class Containment {
   Holder holder_of(std::size_t part) const;
   // The share of a part's core that `other` holds; where that is its holder, that any part holds.
   double swallowed(std::size_t part, std::size_t other) const;
-  // Does the limb come out again: is some of its core outside on both sides of this part's that is inside?
-  bool passes_through(std::size_t part) const;
+  // Does the limb come out again: is some of its core outside on both sides of this part's that `other` holds?
+  bool passes_through(std::size_t part, std::size_t other) const;
 
  private:
   const AssetView& asset_;

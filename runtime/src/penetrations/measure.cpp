@@ -262,7 +262,7 @@ class Measurer {
     const bool is_of_b = in_.are_one ? parts.swaps : b > a;
     parts.swallowed = is_of_b ? b : a;
     parts.passes_through =
-        parts.swallowed >= limit && (is_of_b ? core_b_.passes_through(parts.b) : core_a_.passes_through(parts.a));
+        is_of_b ? core_b_.passes_through(parts.b, parts.a) : core_a_.passes_through(parts.a, parts.b);
   }
 
   // Parts that are inside another, where no triangles meet.
@@ -279,7 +279,7 @@ class Measurer {
       parts.swaps = in_.are_one;
       if (is_wanted(parts)) {
         parts.swallowed = holder.share;
-        parts.passes_through = core.passes_through(part);
+        parts.passes_through = core.passes_through(part, holder.part);
         keep_worst(in_.out, measure_enclosed(parts, in_.are_one || is_of_b), found);
         ++found;
       }

@@ -28,7 +28,7 @@ constexpr Rule kDefault = [] {
 }();
 
 PenetrationClass classify(const Rule& rule, const Measures& of) {
-  if (of.swallowed >= rule.inside) {
+  if (of.swallowed >= rule.inside || of.through != 0) {
     return SC_CLASS_INSIDE;
   }
   if (of.touching >= rule.at_rest) {

@@ -102,6 +102,11 @@ std::vector<Penetration> expected_of(const Winding& of, const Pose& pose, int qu
   job.contacts = contacts.triangles.data();
   job.contact_count = contacts.triangles.size();
   job.quick = quick;
+  const std::vector<std::uint16_t> inside = find_inside(*find.asset, pose, SC_TARGET_BEST);
+  job.inside_a = inside.data();
+  job.adds_enclosed = 1;
+  job.met = contacts.parts.data();
+  job.met_count = contacts.parts.size();
   std::vector<Penetration> out = measure(job, SC_TARGET_BEST);
   for (Penetration& one : out) one.joint = one.joint >= kBones - 1 ? SC_NO_JOINT : kBones - 1 - one.joint;
   return out;

@@ -17,15 +17,9 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-const auto shifted = [](double x, double y, double z) { return [=](const Vec& p) { return Vec(p + Vec(x, y, z)); }; };
 // In which b, the second part, comes out.
 Vec direction_of(const spherechain::Penetration& of) {
   return (of.part == 1 ? 1 : -1) * Vec(double{of.direction.x}, double{of.direction.y}, double{of.direction.z});
-}
-
-spherechain::Penetration only(const std::vector<spherechain::Penetration>& found) {
-  REQUIRE(found.size() == 1);
-  return found[0];
 }
 
 // The same shape, stored the other way round.

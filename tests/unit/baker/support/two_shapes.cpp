@@ -131,6 +131,11 @@ Shape box(double x, double y, double z) {
   return out;
 }
 
+spherechain::Penetration only(const std::vector<spherechain::Penetration>& found) {
+  REQUIRE(found.size() == 1);
+  return found[0];
+}
+
 TwoShapes::TwoShapes(const Shape& a, const Shape& b, double apart, bool is_child, bool one_piece)
     : first_of_b_(a.positions.size()), apart_(apart), are_joined_(is_child || one_piece), asset_([&] {
         Glb glb;
@@ -173,8 +178,7 @@ TwoShapes::TwoShapes(const Shape& a, const Shape& b, double apart, bool is_child
         return OpenAsset({reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size()}, "shapes");
       }()) {}
 
-std::vector<spherechain::Penetration> TwoShapes::measure(
-    const Place& place, const std::function<void(spherechain::PenetrationJob&)>& change, const Place& both) const {
+std::vector<float> TwoShapes::posed(const Place& place, const Place& both) const {
   std::vector<float> vertices = rest_;
   for (std::size_t v = 0; 3 * v < vertices.size(); ++v) {
     float* const p = vertices.data() + 3 * v;
@@ -183,6 +187,36 @@ std::vector<spherechain::Penetration> TwoShapes::measure(
     if (both) at = both(at);
     for (int k = 0; k < 3; ++k) p[k] = static_cast<float>(at[k]);
   }
+  return vertices;
+}
+
+std::vector<spherechain::Penetration> TwoShapes::ask(const Place& place, const Place& both) const {
+  const std::vector<float> vertices = posed(place, both);
+  spherechain::Body body(asset_.model());
+  spherechain::Pose pose;
+  pose.vertices = vertices.data();
+  pose.vertex_count = vertices.size() / 3;
+  REQUIRE(body.set_pose(pose) == SC_OK);
+  std::vector<spherechain::Penetration> out;
+  for (const spherechain::Target target : spherechain::supported_targets()) {
+    spherechain::Query query;
+    query.scope = SC_SCOPE_ALL;
+    query.detail = SC_DETAIL_FULL;
+    query.classes = ~0U;
+    query.target = target;
+    REQUIRE(body.set_pose(pose) == SC_OK);
+    const spherechain::Penetrations found = body.penetrations(query);
+    REQUIRE(body.status() == SC_OK);
+    const std::vector<spherechain::Penetration> all(found.begin(), found.end());
+    if (target == spherechain::supported_targets()[0]) out = all;
+    CHECK(spherechain::test::same_bits(all, out));
+  }
+  return out;
+}
+
+std::vector<spherechain::Penetration> TwoShapes::measure(
+    const Place& place, const std::function<void(spherechain::PenetrationJob&)>& change, const Place& both) const {
+  const std::vector<float> vertices = posed(place, both);
   spherechain::SkinContactJob find;
   find.asset = asset_.handle();
   find.pose.vertices = vertices.data();

@@ -34,10 +34,23 @@ class TwoShapes {
                                                 const std::function<void(spherechain::PenetrationJob&)>& change = {},
                                                 const Place& both = {}) const;
 
+  // The same as a body finds it, with the parts that are inside another: alike on every target.
+  std::vector<spherechain::Penetration> ask(const Place& place, const Place& both = {}) const;
+
  private:
+  std::vector<float> posed(const Place& place, const Place& both) const;
+
   std::vector<float> rest_;
   std::size_t first_of_b_;
   double apart_;
   bool are_joined_;
   spherechain::baker::OpenAsset asset_;
 };
+
+// A place of b, and the one entry of a list.
+inline auto shifted(double x, double y, double z) {
+  return [=](const spherechain::baker::Vec3& p) {
+    return spherechain::baker::Vec3(p + spherechain::baker::Vec3(x, y, z));
+  };
+}
+spherechain::Penetration only(const std::vector<spherechain::Penetration>& found);

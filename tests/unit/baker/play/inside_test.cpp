@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parts inside others, of shapes for which it is known.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "two_shapes.h"
+
+using Vec = spherechain::baker::Vec3;
+using spherechain::Penetration;
+
+namespace {
+
+Vec way_of(const Penetration& of) {
+  return double{of.distance} * Vec(double{of.direction.x}, double{of.direction.y}, double{of.direction.z});
+}
+
+Shape turned_inside_out(Shape shape) {
+  for (auto& t : shape.triangles) std::swap(t[0], t[1]);
+  return shape;
+}
+
+Shape double_sided(Shape shape) {
+  const Shape back = turned_inside_out(shape);
+  shape.triangles.insert(shape.triangles.end(), back.triangles.begin(), back.triangles.end());
+  return shape;
+}
+
+}  // namespace
+
+TEST_CASE("a ball inside a larger one is inside it, where no skins meet, and its way out is clear") {
+  const Shape large = ball(1, 12), small = ball(0.2, 8);
+  Shape open = large;
+  open.triangles.resize(open.triangles.size() - 3);
+  for (const Shape& around : {large, turned_inside_out(large), double_sided(large), open}) {
+    const TwoShapes balls(around, small);
+    for (const double x : {0.0, 0.5, 0.7}) {
+      const Penetration found = only(balls.ask(shifted(x, 0.01, 0.02)));
+      CHECK(found.kind == SC_CLASS_INSIDE);
+      CHECK(found.part == 1);
+      CHECK(found.measures.swallowed == 1);
+      CHECK(found.measures.through == 0);
+      CHECK(found.measures.contour_length == 0);
+      CHECK(found.distance == doctest::Approx(1.2 - x).epsilon(0.05));
+      const Vec out = Vec(x, 0.01, 0.02) + 1.001 * way_of(found);
+      CHECK(balls.ask(shifted(out.x(), out.y(), out.z())).empty());
+    }
+    CHECK(balls.ask(shifted(1.3, 0, 0)).empty());
+  }
+}
+
+TEST_CASE("a ball that goes into another is inside from where its middle is, and mirrored answers are mirrored") {
+  const TwoShapes balls(ball(1, 12), ball(0.3, 8));
+  const auto mirrored = [](const Vec& p) { return Vec(-p.x(), p.y(), p.z()); };
+  for (const double x : {1.1, 1.02, 0.97, 0.8}) {
+    const Penetration found = only(balls.ask(shifted(x, 0, 0)));
+    CHECK((found.kind == SC_CLASS_INSIDE) == (x < 1));
+    CHECK(found.measures.contour_length > 0);
+    const Penetration back = only(balls.ask(shifted(x, 0, 0), mirrored));
+    CHECK(back.kind == found.kind);
+    CHECK(back.measures.swallowed == found.measures.swallowed);
+    CHECK(back.distance == doctest::Approx(found.distance).epsilon(0.01));
+  }
+}
+
+TEST_CASE("a rod through a ball goes through it, and one whose end is inside does not") {
+  const TwoShapes rod(ball(1.6, 12), capsule(0.1, 1.8, 8));
+  const Penetration through = only(rod.ask(shifted(0, 0, 0)));
+  CHECK(through.kind == SC_CLASS_INSIDE);
+  CHECK(through.measures.through == 1);
+  const Penetration end = only(rod.ask(shifted(0, 0.9, 0)));
+  CHECK(end.measures.through == 0);
+}
