@@ -145,7 +145,7 @@ const copied = (sizeOf, write) => {
 const copiedFloats = () => copied(value => 4 * value.length, (place, value) => floats.set(value, place / 4));
 
 const vec3 = vector(0, 0, 0), side = choice(null, 'left', 'right');
-const CLASSES = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration'], classOf = choice(...CLASSES);
+const CLASSES = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration', 'inside'], classOf = choice(...CLASSES);
 const Info = struct({
   sphereCount: int, boneCount: int, partCount: int, morphCount: int, regionCount: int, sourceBufferCount: int, vertexCount: int,
   triangleCount: int, ignoredPairCount: int, writer: text, settings: text, settingsSha256: text, sourceFile: text, sourceSha256: text,
@@ -162,16 +162,17 @@ const StepContact = struct({
 const SkinPoint = struct({ position: vec3, triangle: int, weights: vec3 });
 const Measures = struct({
   depth: float, volume: measured, contourLength: float, visible: float, touching: float, facing: float, restDistance: float,
-  thickness: measured, swallowed: measured, height: float, metre: float,
-  relation: choice('apart', 'near', 'siblings', 'joined', 'two_bodies'), isOnePiece: flag,
+  thickness: measured, extent: measured, height: float, metre: float,
+  relation: choice('apart', 'near', 'siblings', 'joined', 'two_bodies'), isOnePiece: flag, swallowed: float, through: flag,
 });
 const Penetration = struct({
   part: int, other: int, joint: int, kind: classOf, direction: vec3, distance: float, centre: vec3, low: vec3, high: vec3,
   deepest: SkinPoint, deepestOther: SkinPoint, measures: Measures,
 });
 const Rule = struct({
-  version: int, touchDepth: float, touchMetres: float, touchMin: float, touchMax: float, touchTimes: float, swallowed: float,
+  version: int, touchDepth: float, touchMetres: float, touchMin: float, touchMax: float, touchTimes: float, extent: float,
   atRest: float, hidden: float, shell: float, fold: float, neighbours: float, foldFacing: float, deepFold: float,
+  inside: float,
 });
 const BodyDef = struct({
   maxTriangles: int, maxPenetrations: int, largestOther: handle('createModel()'), findsSteps: flag, allocator: int,
