@@ -148,6 +148,7 @@ test('a query says what is listed', () => {
     [{ previous: 3 }, /previous: a list is wanted, not 3/],
     [{ previous: [{}] }, /./],
     [{ filter: {} }, /filter: what createFilter\(\) made is wanted, not an Object/],
+    [{ filter: model }, /filter: what createFilter\(\) made is wanted, not a Model/],
     [{ ignoredParts: [1] }, /ignored/],
     [{ ignoredParts: [-1] }, /ignoredParts: -1 is no body part/],
     [7, /query: an object is wanted, not 7/],
@@ -180,7 +181,7 @@ test('steps, the ground and bounds', () => {
   moved(moved(plain, rest), posed);
   refuses(() => plain.steps(), /findsSteps/);
   refuses(() => model.createBody({ findSteps: true }), /"findSteps" is none of/);
-  refuses(() => model.createBody({ largestOther: body }).contacts(), /./);
+  refuses(() => model.createBody({ largestOther: body }), /largestOther: what createModel\(\) made is wanted, not a Body/);
   model.dispose();
 
   function moved(one, palette) {

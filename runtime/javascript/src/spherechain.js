@@ -128,8 +128,8 @@ const struct = fields => {
   };
 };
 // The place of what `maker` made.
-const handle = maker => field(0, null, (place, value, name) => {
-  if (value !== undefined && !handles.has(value)) refuse(`${name}: what ${maker} made is wanted, not ${kindOf(value)}`);
+const handle = (maker, type) => field(0, null, (place, value, name) => {
+  if (value !== undefined && !(handles.has(value) && value instanceof type())) refuse(`${name}: what ${maker} made is wanted, not ${kindOf(value)}`);
   words[place / 4] = value === undefined ? 0 : handles.get(value);
 });
 // The place of a copy, in a room of its own.
@@ -175,7 +175,7 @@ const Rule = struct({
   inside: float,
 });
 const BodyDef = struct({
-  maxTriangles: int, maxPenetrations: int, largestOther: handle('createModel()'), findsSteps: flag, allocator: int,
+  maxTriangles: int, maxPenetrations: int, largestOther: handle('createModel()', () => Model), findsSteps: flag, allocator: int,
 });
 const Pose = struct({
   bones: copiedFloats(), boneCount: int, boneLayout: int, boneStride: int, morphWeights: copiedFloats(),
@@ -198,7 +198,7 @@ const history = copied(value => 4 * Penetration.words * checkList(value, 'previo
   for (let i = 0; i < value.length; ++i) Penetration.write(place + 4 * Penetration.words * i, value[i], `previous[${i}]`);
 });
 const Query = struct({
-  scope: choice('apart', 'neighbours', 'all'), detail: choice('quick', 'full'), filter: handle('createFilter()'), ignoredParts: parts(),
+  scope: choice('apart', 'neighbours', 'all'), detail: choice('quick', 'full'), filter: handle('createFilter()', () => Filter), ignoredParts: parts(),
   ignoredPartsOfOther: parts(), partPairs: copied(value => 4 * value.length, (place, value) => words.set(value, place / 4)),
   rule: limits,
   classes: field(0, null, (place, value = [], name) => {
