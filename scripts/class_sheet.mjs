@@ -95,7 +95,7 @@ function chooseDeepest({ model, ...rest }) {
   const found = new Map();
   for (let frame = 0; frame < model.frameCount; ++frame) {
     for (const contact of model.contacts.of(frame)) {
-      if (contact.kind === kPenetration && !(contact.depth <= found.get(contact.key)?.contact.depth)) {
+      if (contact.kind >= kPenetration && !(contact.depth <= found.get(contact.key)?.contact.depth)) {
         found.set(contact.key, { frame, contact });
       }
     }
@@ -295,7 +295,7 @@ const random = randomFrom(seed);
 const shuffled = (list) => list.map((x) => [random(), x]).sort((p, q) => p[0] - q[0]).map((p) => p[1]);
 const groups = deepest
   ? loaded.map((one) => [`deepest_${one.name}`, chooseDeepest(one)])
-  : [["judged", shuffled([...choose(loaded, kCount, random, (kind) => kind === kPenetration), ...choose(loaded, kCount, random, (kind) => kind !== kPenetration)])]];
+  : [["judged", shuffled([...choose(loaded, kCount, random, (kind) => kind >= kPenetration), ...choose(loaded, kCount, random, (kind) => kind < kPenetration)])]];
 const table = [];
 for (const [name, samples] of groups.filter(([, list]) => list.length > 0)) {
   const drawn = samples.map((sample, i) => {
@@ -305,12 +305,12 @@ for (const [name, samples] of groups.filter(([, list]) => list.length > 0)) {
       depth_mm: +contact.depth.toFixed(1), height_share: +(contact.depth * model.mesh.unitsPerMm / model.height).toFixed(4), visible: +contact.visible.toFixed(3), seen: +images.seen.toFixed(2) };
     table.push(row);
     const who = `<b>${row.number}</b> ${row.character} ${row.frame}<br>${parts.join(" / ")}`, figures = `${row.depth_mm} mm, ${(100 * row.height_share).toFixed(1)} %, ${clip.name}`;
-    return { kind: contact.kind, small: { images: [images.small], label: `${who}<br>${contact.kind === kPenetration ? "" : `${row.class}, `}${figures}`, height: 160 },
+    return { kind: contact.kind, small: { images: [images.small], label: `${who}<br>${contact.kind >= kPenetration ? "" : `${row.class}, `}${figures}`, height: 160 },
       large: { images: images.large, label: deepest ? `${who}<br>${figures}<br>visible ${row.visible}, volume ${contact.volume.toFixed(1)} ml` : who, height: kLarge } };
   });
   if (!deepest) {
     for (const [group, ofPenetrations] of [["penetrations", true], ["others", false]]) {
-      sheet(join(out, `${group}.png`), drawn.filter(({ kind }) => (kind === kPenetration) === ofPenetrations).map(({ small }) => small), 10, 162);
+      sheet(join(out, `${group}.png`), drawn.filter(({ kind }) => (kind >= kPenetration) === ofPenetrations).map(({ small }) => small), 10, 162);
     }
   }
   for (let i = 0; i < drawn.length; i += kOfSheet) {

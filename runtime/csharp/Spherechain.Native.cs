@@ -152,6 +152,8 @@ namespace Spherechain
         DeepFold = 4,
         /// <summary>everything else: a fault</summary>
         Penetration = 5,
+        /// <summary>the middle of the one part is inside the other: a fault</summary>
+        Inside = 6,
     }
 
     public enum Relation : int  // sc_relation
@@ -260,12 +262,16 @@ namespace Spherechain
         /// <summary>of the thinner part, there, in the pose's units; negative: not known</summary>
         public float Thickness;
         /// <summary>depth / thickness * seen length / side of a square with the area of the smaller part; negative: not known, for the class does not depend on it</summary>
-        public float Swallowed;
+        public float Extent;
         /// <summary>how long the character's height and a metre are in the pose's units</summary>
         public float Height, Metre;
         public Relation Relation;
         /// <summary>1: the two spots are of one piece of skin</summary>
         public int IsOnePiece;
+        /// <summary>0 to 1: of the spheres' centres of `part` the share that is inside `other`; where that holds most of them, inside any part. 0 where they were not looked at</summary>
+        public float Swallowed;
+        /// <summary>1: `part` is inside, and its limb comes out again on the other side</summary>
+        public int Through;
     }
 
     public struct Rule  // sc_rule
@@ -276,10 +282,10 @@ namespace Spherechain
         public float TouchDepth;
         /// <summary>skins up to this depth only touch: touch_metres, but not less than touch_min and not more than touch_max</summary>
         public float TouchMetres, TouchMin, TouchMax;
-        /// <summary>an intersection up to so many times deeper is still a touch if it is no fold and its sc_measures.swallowed is below `swallowed`</summary>
+        /// <summary>an intersection up to so many times deeper is still a touch if it is no fold and its sc_measures.extent is below `extent`</summary>
         public float TouchTimes;
-        /// <summary>touch: sc_measures.swallowed is below this, see touch_times</summary>
-        public float Swallowed;
+        /// <summary>touch: sc_measures.extent is below this, see touch_times</summary>
+        public float Extent;
         /// <summary>rest: at least this share of the triangle pairs touches at rest</summary>
         public float AtRest;
         /// <summary>shell: less than this share of the line is visible</summary>
@@ -294,6 +300,8 @@ namespace Spherechain
         public float FoldFacing;
         /// <summary>deep fold: a fold within one piece of skin is deeper than this</summary>
         public float DeepFold;
+        /// <summary>inside: at least this share of the part is swallowed</summary>
+        public float Inside;
     }
 
     public struct PartContact  // sc_part_contact
@@ -390,13 +398,13 @@ namespace Spherechain
 #endif
         const CallingConvention Cdecl = CallingConvention.Cdecl;
 
-        public const uint AbiVersion = 12;
+        public const uint AbiVersion = 13;
         public const uint AssetAlignment = 8;
         public const uint Floor = 0xFFFFFFFFu;
         public const uint NoJoint = 0xFFFFFFFFu;
         public const uint NoPart = 0xFFFFFFFFu;
         public const uint NoTriangle = 0xFFFFFFFFu;
-        public const uint RuleVersion = 2;
+        public const uint RuleVersion = 3;
         // Left out: SC_WHOLE_SOURCE: its width depends on the machine: pass new UIntPtr(UIntPtr.Size == 8 ? ulong.MaxValue : uint.MaxValue).
 
         public unsafe struct Asset  // sc_asset

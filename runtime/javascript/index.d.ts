@@ -183,8 +183,8 @@ export interface Query {
 /** `total` is larger than `length` where there was no room, or the query has a limit. */
 export type Results<T> = T[] & { total: number };
 
-/** The class of a contact, in a person's words; docs/concepts.md has the rule. 'penetration' and 'deep_fold' are faults. */
-export type PenetrationClass = 'rest' | 'shell' | 'touch' | 'fold' | 'deep_fold' | 'penetration';
+/** The class of a contact, in a person's words; docs/concepts.md has the rule. The last three are faults, the last the worst. */
+export type PenetrationClass = 'rest' | 'shell' | 'touch' | 'fold' | 'deep_fold' | 'penetration' | 'inside';
 
 /** Two body parts that intersect. */
 export interface Penetration {
@@ -218,19 +218,19 @@ export interface Measures {
   depth: number;
   /** Volume of one part inside the other, in cubed units. */
   volume: number | null;
-  /** Length of the line in which the parts cross. */
+  /** Length of the line in which the parts cross: 0 where a part is wholly inside the other. */
   contourLength: number;
   /** Shares of that line: that can be seen from outside (1 where it was not looked at); that touches at rest. */
   visible: number;
   touching: number;
   /** -1 to 1: 1 where the sides lie flat on each other. */
   facing: number;
-  /** Between the two spots at rest, a share of the height; Infinity of two bodies. */
+  /** Between the two spots at rest, a share of the height; Infinity of two bodies, and where no line crosses. */
   restDistance: number;
   /** Thickness of the thinner part at the contact. */
   thickness: number | null;
   /** depth / thickness * visible length / side of a square like the smaller part. */
-  swallowed: number | null;
+  extent: number | null;
   /** The character's height, and a metre, in the palette's units. */
   height: number;
   metre: number;
@@ -238,11 +238,15 @@ export interface Measures {
   relation: 'apart' | 'near' | 'siblings' | 'joined' | 'two_bodies';
   /** Whether the two spots are of one piece of skin. */
   isOnePiece: boolean;
+  /** 0 to 1: the share of `part` that is inside `other`; 0 where it was not looked at. */
+  swallowed: number;
+  /** `part` is inside, and comes out again on the other side. */
+  through: boolean;
 }
 
 /** The limits of a class, as sc_rule in rule.h explains them. */
-export type Rule = Record<'version' | 'touchDepth' | 'touchMetres' | 'touchMin' | 'touchMax' | 'touchTimes' | 'swallowed' | 'atRest' | 'hidden' |
-  'shell' | 'fold' | 'neighbours' | 'foldFacing' | 'deepFold', number>;
+export type Rule = Record<'version' | 'touchDepth' | 'touchMetres' | 'touchMin' | 'touchMax' | 'touchTimes' | 'extent' | 'atRest' | 'hidden' |
+  'shell' | 'fold' | 'neighbours' | 'foldFacing' | 'deepFold' | 'inside', number>;
 
 export interface Contacts {
   /** partA <= partB of one body; of two, partB is of the other one. Low and high: a box around the triangles that intersect. */

@@ -13,7 +13,7 @@ import { basename, join } from 'node:path';
 const [tool, ...files] = process.argv.slice(2);
 if (files.length === 0) throw new Error('node check_against_cgal.mjs TOOL FILE[+MOTION]...');
 const folder = mkdtempSync(join(tmpdir(), 'check-'));
-const kGap = 3, faults = ['penetration', 'deep_fold'];
+const kGap = 3, faults = ['inside', 'penetration', 'deep_fold'];
 const rate = ['--fps', '30'];
 
 function run(...words) {

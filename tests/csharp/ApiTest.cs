@@ -216,7 +216,7 @@ public static class ApiTest
                 Check(found.All(p => p.Kind >= PenetrationClass.DeepFold && p.Measures.Depth > 0), "faults alone");
                 Check(found.All(p => p.Joint == model.PartJoint(p.Part) && clip.Joints[p.Joint].Length > 0), "joints");
                 Check(found.SequenceEqual(Listed(body.Penetrations(rigid))), "the default rule");
-                Check(body.Penetrations(all).Count == contacts.Parts.Count, "a penetration for each two parts in contact");
+                Check(Listed(body.Penetrations(all)).Count(Meets) == contacts.Parts.Count, "a penetration for each two parts in contact");
                 Results<Penetration> worst = body.Penetrations(limited);
                 Check(worst.Total == found.Length && Listed(worst).SequenceEqual(found.Take(1)), "the worst one");
                 Check(Listed(narrow.Penetrations()).SequenceEqual(found.Take(1)), "the worst one that there is room for");
@@ -258,6 +258,12 @@ public static class ApiTest
         return place;
     }
 
+    // Does skin cross skin? A part that is wholly inside another meets no skin.
+    static bool Meets(Penetration of)
+    {
+        return of.Kind != PenetrationClass.Inside || of.Measures.ContourLength > 0;
+    }
+
     static void TwoBodiesMeet(Model model)
     {
         using (Body a = new Body(model, model, true))
@@ -274,7 +280,7 @@ public static class ApiTest
                 Check(parts > 0 == distance < 1, "contacts at " + distance);
                 contacts = b.Contacts(a, full);
                 Check(contacts.Parts.Count == parts && contacts.Triangles.Count == triangles, "contacts the other way round");
-                Check(a.Penetrations(b, all).Count == Math.Min(parts, 128), "measures at " + distance);
+                Check(Listed(a.Penetrations(b, all)).Count(Meets) == Math.Min(parts, 128), "measures at " + distance);
                 Check(Listed(a.Penetrations(b, all)).All(p => p.Measures.Depth > 0), "a depth");
             }
             a.SetPose(deepest, kColumns);

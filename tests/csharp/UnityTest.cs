@@ -111,7 +111,7 @@ public static class UnityTest
                 reference.SetPose(palette, MatrixLayout.Columns4x4);
                 foreach (Penetration expected in reference.Penetrations())
                 {
-                    if (expected.Kind != PenetrationClass.Penetration || expected.Measures.Depth < 0.01f * height) continue;
+                    if (expected.Kind < PenetrationClass.Penetration || expected.Measures.Depth < 0.01f * height) continue;
                     ++faults;
                     Penetration found = Find(component, expected);
                     Vec3 d = expected.Direction;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // golden FOLDER [--print]
-// Hashes the spheres, pairs and skin contacts of a clip of 256 frames, by every job, on every target and in one to four
+// Hashes the spheres, pairs, skin contacts and penetrations of a clip of 256 frames, on every target and in one to four
 // threads, and compares them with the folder's hashes.txt. They are the same on every machine, with every compiler and
 // at every optimization level.
 //
@@ -8,6 +8,7 @@
 // both:
 //   build/release/bin/golden tests/golden --print > tests/golden/hashes.txt
 // The counts beside the hashes of pairs and contacts should then hardly change.
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 
@@ -16,6 +17,7 @@
 #include "hashes.h"
 #include "jobs.h"
 #include "runtime/src/base/pair_bits.h"
+#include "spherechain/body.h"
 
 namespace {
 
@@ -147,7 +149,7 @@ struct ContactHashes {
   std::vector<Penetration> last;
   int frames = 0;
 
-  void add(const SkinContacts& found, const SkinContactJob& by) {
+  void add(const SkinContacts& found, const SkinContactJob& by, Body& body) {
     std::vector<Pair> pairs;
     std::vector<Vec3> ends;
     for (const TriangleContact& contact : found.triangles) {
@@ -160,14 +162,18 @@ struct ContactHashes {
     if (frames++ % 4 > 0) {
       return;  // the measure takes a minute under sanitizers
     }
-    PenetrationJob job;
-    job.asset = by.asset;
-    job.pose = by.pose;
-    job.contacts = found.triangles.data();
-    job.contact_count = found.triangles.size();
-    job.previous = last.data();
-    job.previous_count = last.size();
-    last = measure(job, by.target);
+    Query query;
+    query.detail = SC_DETAIL_FULL;
+    query.classes = ~0U;
+    query.previous = last.data();
+    query.previous_count = last.size();
+    query.target = by.target;
+    body.set_pose(by.pose);
+    const Penetrations measured = body.penetrations(query);
+    last.assign(measured.items, measured.items + measured.count);
+    std::sort(last.begin(), last.end(), [](const Penetration& l, const Penetration& r) {
+      return std::minmax(l.part, l.other) < std::minmax(r.part, r.other);
+    });
     penetrations.add_list(last);
   }
   void add_to(HashTable& table, const std::string& from, Target target) const {
@@ -180,6 +186,8 @@ struct ContactHashes {
 
 void hash_skin(const Doll& doll, const std::vector<Palette>& clip, HashTable& table) {
   const PreparedSkin prepared(doll.asset);
+  const Model model(doll.bytes.data(), 8 * doll.bytes.size(), nullptr, 0, SC_ROWS_3X4);
+  Body body(model);
   for (const Target target : supported_targets()) {
     Hash positions;
     ContactHashes by_vertices, by_bones;
@@ -195,9 +203,9 @@ void hash_skin(const Doll& doll, const std::vector<Palette>& clip, HashTable& ta
       job.asset = &doll.asset;
       job.target = target;
       job.pose = vertices_of(vertices);
-      by_vertices.add(find_contacts(job), job);
+      by_vertices.add(find_contacts(job), job, body);
       job.pose = bones_of(palette);
-      by_bones.add(find_contacts(job), job);
+      by_bones.add(find_contacts(job), job, body);
     }
     table.add("skinned vertices", positions, sc_target_name(target));
     by_vertices.add_to(table, "vertices", target);

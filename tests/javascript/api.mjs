@@ -92,16 +92,17 @@ test('a query says what is listed', () => {
   const all = structuredClone(body.penetrations({ classes: spherechain.classes })), faults = structuredClone(body.penetrations());
   assert.equal(all.total, all.length);
   assert.ok(faults.length > 1 && all.length > faults.length);
-  assert.deepEqual([...faults], all.slice(0, faults.length).filter(({ kind }) => ['deep_fold', 'penetration'].includes(kind)));
+  assert.deepEqual([...faults], all.slice(0, faults.length).filter(({ kind }) => ['deep_fold', 'penetration', 'inside'].includes(kind)));
   const limited = structuredClone(body.penetrations({ limit: 1 }));
   assert.deepEqual([limited.length, limited.total, limited[0]], [1, faults.length, faults[0]]);
   assert.equal(model.createBody({ maxPenetrations: 1 }).model, model);
   // The classes of full measurements follow from them, by any rule.
   const full = body.penetrations({ detail: 'full', classes: spherechain.classes });
   for (const { kind, measures } of full) assert.equal(spherechain.classify(measures), kind);
-  const { depth } = full[0].measures, { version, touchDepth, deepFold } = spherechain.defaultRule;
-  assert.deepEqual([version, touchDepth], [2, 0]);
-  assert.ok(deepFold > 0);
+  const { depth } = full[0].measures, { version, touchDepth, deepFold, inside } = spherechain.defaultRule;
+  assert.deepEqual([version, touchDepth], [3, 0]);
+  assert.ok(deepFold > 0 && inside > 0.5 && inside <= 1);
+  assert.equal(spherechain.classify({ ...full[0].measures, swallowed: 1 }), 'inside');
   assert.equal(spherechain.classify(full[0].measures, { touchDepth: 2 * depth, hidden: 0, shell: 0, fold: 0, neighbours: 0 }), 'touch');
   assert.equal(body.penetrations({ rule: { ...spherechain.defaultRule, touchDepth: 2 * depth } }).length, 0);
   const pair = [faults[0].part, faults[0].other];
@@ -147,6 +148,7 @@ test('a query says what is listed', () => {
     [{ previous: 3 }, /previous: a list is wanted, not 3/],
     [{ previous: [{}] }, /./],
     [{ filter: {} }, /filter: what createFilter\(\) made is wanted, not an Object/],
+    [{ filter: model }, /filter: what createFilter\(\) made is wanted, not a Model/],
     [{ ignoredParts: [1] }, /ignored/],
     [{ ignoredParts: [-1] }, /ignoredParts: -1 is no body part/],
     [7, /query: an object is wanted, not 7/],
@@ -179,7 +181,7 @@ test('steps, the ground and bounds', () => {
   moved(moved(plain, rest), posed);
   refuses(() => plain.steps(), /findsSteps/);
   refuses(() => model.createBody({ findSteps: true }), /"findSteps" is none of/);
-  refuses(() => model.createBody({ largestOther: body }).contacts(), /./);
+  refuses(() => model.createBody({ largestOther: body }), /largestOther: what createModel\(\) made is wanted, not a Body/);
   model.dispose();
 
   function moved(one, palette) {

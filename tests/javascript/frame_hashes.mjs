@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The lines that reference.cpp prints, by the package: for Node and for a page.
-const KINDS = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration'];
+const KINDS = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration', 'inside'];
 const RELATIONS = ['apart', 'near', 'siblings', 'joined', 'two_bodies'];
 
 class Hash {
@@ -50,8 +50,10 @@ export function addPenetration(hash, { part, other, joint, kind, direction, dist
     hash.floats(point.weights);
   }
   hash.floats([measures.depth, measures.volume ?? -1, measures.contourLength, measures.visible, measures.touching, measures.facing]);
-  hash.floats([measures.restDistance, measures.thickness ?? -1, measures.swallowed ?? -1, measures.height, measures.metre]);
+  hash.floats([measures.restDistance, measures.thickness ?? -1, measures.extent ?? -1, measures.height, measures.metre]);
   hash.words([RELATIONS.indexOf(measures.relation), measures.isOnePiece ? 1 : 0]);
+  hash.floats([measures.swallowed]);
+  hash.words([measures.through ? 1 : 0]);
 }
 
 // A line of hashes: each of what its function adds.

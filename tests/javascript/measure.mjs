@@ -52,7 +52,7 @@ export async function quickAgainstFull(load, asset, palettes) {
   const model = spherechain.createModel(asset, joints), body = model.createBody(), { classes } = spherechain;
   const ratios = [];
   let otherClasses = 0, otherFaults = 0;
-  const isFault = ({ kind }) => kind === 'deep_fold' || kind === 'penetration';
+  const isFault = ({ kind }) => ['deep_fold', 'penetration', 'inside'].includes(kind);
   for (const palette of frames) {
     body.setPose(palette);
     const quick = new Map(structuredClone(body.penetrations({ classes })).map(found => [`${found.part} ${found.other}`, found]));

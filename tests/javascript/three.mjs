@@ -35,7 +35,7 @@ try {
   }))`);
   assert.ok(skin > 2000 && red < skin / 10, `${skin} pixels of skin, ${red} red`);
   for (const line of lines) {
-    const [, parts] = /^(.+ in .+): \d+ mm, (?:penetration|deep_fold)$/.exec(line) ?? assert.fail(line);
+    const [, parts] = /^(.+ in .+): \d+ mm, (?:inside|penetration|deep_fold)$/.exec(line) ?? assert.fail(line);
     assert.ok(hello.includes(`: ${parts},`), `${line}: not in this clip`);
   }
   assert.deepEqual(page.noise, []);

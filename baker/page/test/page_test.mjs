@@ -74,13 +74,13 @@ test('a page of two has the contacts of each, and those between them', async () 
 test('a page of before and after opens at the deepest fault before, and lays one over the other', async () => {
   const fixed = await shown(pages.fixed);
   const { page } = fixed;
-  const penetrations = (who) => contacts(page).then((list) => list.filter(({ name, kind }) => kind === 5 && name.startsWith(who)));
+  const penetrations = (who) => contacts(page).then((list) => list.filter(({ name, kind }) => kind >= 5 && name.startsWith(who)));
   const own = await frame(page);
   const [{ depth: deepest }] = await penetrations('before');
   assert.deepEqual(await penetrations('after'), []);
   // At once: nothing is drawn.
   const all = await page.evaluate(() => Array.from({ length: 40 }, (_, i) => (spherechainViewer.setFrame(i), spherechainViewer.contacts())).flat());
-  for (const { name, kind, depth } of all) assert.ok(kind !== 5 || !name.startsWith('before') || depth <= deepest);
+  for (const { name, kind, depth } of all) assert.ok(kind < 5 || !name.startsWith('before') || depth <= deepest);
   await goTo(page, own);
   const beside = await picture(page);
   await page.keyboard.press('o');
@@ -91,7 +91,7 @@ test('a page of before and after opens at the deepest fault before, and lays one
   assert.ok(again < 0.01, `${again}`);
   silent(fixed);
   // With no contact in it, all that the picture loses with the old pose's parts is the ghost.
-  const quiet = await shown(pages.variant('ghost.html', (data) => (data.frames.contacts = { counts: '', entries: '' }), 'fixed/clip_0.html'));
+  const quiet = await shown(pages.variant('ghost.html', (data) => (data.frames.contacts = data.frames.penetrations = { counts: '', entries: '' }), 'fixed/clip_0.html'));
   await goTo(quiet.page, own);
   await quiet.page.keyboard.press('o');
   const ghost = await picture(quiet.page);
@@ -111,20 +111,20 @@ test('contacts are the triangles of the skin that play reports, with class and d
   assert.ok(pages.play[TOUCHING].skin.triangles.length > 0);
   for (const number of [0, TOUCHING, 19, 36, 39]) {
     await goTo(page, number);
-    const listed = await contacts(page);
+    const listed = await contacts(page), crossing = listed.filter(({ pairs }) => pairs > 0);
     const triangles = (lists) => [...new Set(lists.flat())].sort((a, b) => a - b);
-    assert.deepEqual(triangles(listed.map((contact) => contact.triangles)), triangles(pages.play[number].skin.triangles));
+    assert.deepEqual(triangles(crossing.map((contact) => contact.triangles)), triangles(pages.play[number].skin.triangles));
     const { parts } = pages.play[number].skin;
     const partPair = ({ a, b }) => (a === b ? `${a} with itself` : `${a}, ${b}`);
     const row = (name, pairs) => `${name}: ${pairs}`;
-    assert.deepEqual(listed.map(({ name, pairs }) => row(inAnyOrder(name), pairs)).sort(), parts.map((part) => row(inAnyOrder(partPair(part)), part.triangle_pairs)).sort());
+    assert.deepEqual(crossing.map(({ name, pairs }) => row(inAnyOrder(name), pairs)).sort(), parts.map((part) => row(inAnyOrder(partPair(part)), part.triangle_pairs)).sort());
     const rows = await page.locator('.contact').allInnerTexts();
     assert.equal(rows.length, listed.length);
     const measured = pages.play[number].penetrations;
     listed.forEach(({ name, kind, depth }, i) => {
       const found = measured.find(({ parts: [a, b] }) => partPair({ a, b }) === name);
       assert.ok(Math.abs(depth - found.depth_mm) < 1e-3 * found.depth_mm + 1e-3, name);
-      assert.ok(rows[i].includes(name) && /(as at rest|shell|hidden|touch|fold|penetration), [0-9.]+ mm/.test(rows[i]), rows[i]);
+      assert.ok(rows[i].includes(name) && /(as at rest|shell|hidden|touch|fold|penetration|inside \d+ %(, comes out again)?), [0-9.]+ mm/.test(rows[i]), rows[i]);
       if (i > 0) assert.ok(kind < listed[i - 1].kind || (kind === listed[i - 1].kind && depth <= listed[i - 1].depth));
     });
     assert.equal(await page.locator('.readout .warning').count(), listed.some(isFault) ? 1 : 0);
@@ -135,7 +135,7 @@ test('contacts are the triangles of the skin that play reports, with class and d
   assert.equal(said.size, played.length);
   for (const { a, b, class: kind, frames, fault_frames: faults, frame_of_depth_max: deepest } of played) {
     const runs = (faults.length > 0 ? faults : frames).map(([from, to]) => (from === to ? `${from}` : `${from}–${to}`)).join(', ');
-    assert.match(said.get(inAnyOrder(`${a}, ${b}`)), new RegExp(`^${kind}, [0-9.]+ mm at ${deepest}; frames? ${runs}$`));
+    assert.match(said.get(inAnyOrder(`${a}, ${b}`)), new RegExp(`^${kind.replace('_', ' ')}(| \\d+ %(, comes out again)?), [0-9.]+ mm at ${deepest}; frames? ${runs}$`));
   }
   assert.ok(played.some(({ frames, fault_frames: faults }) => faults.length > 0 && `${frames}` !== `${faults}`));
 });
@@ -143,14 +143,14 @@ test('contacts are the triangles of the skin that play reports, with class and d
 test('D goes to the deepest frame of the clip', async () => {
   const page = await fresh();
   await page.keyboard.press('d');
-  const fault = ({ class: kind }) => kind === 'penetration' || kind === 'deep_fold';
-  const deepest = pages.play.map(({ penetrations }) => Math.max(0, ...penetrations.filter(fault).map(({ depth_mm }) => depth_mm)));
+  const rank = ({ class: kind }) => ['deep_fold', 'penetration', 'inside'].indexOf(kind);
+  const deepest = pages.play.map(({ penetrations }) => Math.max(0, ...penetrations.filter((one) => rank(one) >= 0).map((one) => 1e6 * rank(one) + one.depth_mm)));
   assert.equal(await frame(page), deepest.indexOf(Math.max(...deepest)));
 });
 
 test('contacts are marked in the picture, and nothing else is red', async () => {
   const page = await fresh();
-  const quiet = await shown(pages.variant('quiet.html', (data) => (data.frames.contacts = { counts: '', entries: '' })));
+  const quiet = await shown(pages.variant('quiet.html', (data) => (data.frames.contacts = data.frames.penetrations = { counts: '', entries: '' })));
   for (const [number, least, most] of [[0, 0, 0], [TOUCHING, 0.0005, 0.02]]) {
     await goTo(page, number);
     await goTo(quiet.page, number);
@@ -303,9 +303,10 @@ function turnAround(data, first) {
 // All contacts are shells, the first of a frame is out of sight.
 function hide({ frames: { penetrations } }) {
   const entries = unpack(penetrations.entries, Float32Array);
+  const counts = unpack(penetrations.counts, Uint32Array), width = entries.length / counts.reduce((sum, count) => sum + count);
   let at = 0;
-  for (const count of unpack(penetrations.counts, Uint32Array)) {
-    for (let i = 0; i < count; ++i, at += 12) [entries[at + 2], entries[at + 10]] = [1, i === 0 ? 0.1 : 0.5];
+  for (const count of counts) {
+    for (let i = 0; i < count; ++i, at += width) [entries[at + 2], entries[at + 10]] = [1, i === 0 ? 0.1 : 0.5];
   }
   penetrations.entries = base64(entries);
 }

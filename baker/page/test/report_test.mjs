@@ -42,7 +42,8 @@ const open = async (address = url('index.html')) => {
   await page.waitForFunction(() => window.spherechainReport?.ready);
 };
 const rows = () => page.locator('#rows tr').allInnerTexts();
-const faults = (clip) => clip.events.filter((event) => event.class === 'penetration' || event.class === 'deep_fold');
+const rank = (event) => ['deep_fold', 'penetration', 'inside'].indexOf(event.class); // the worst last
+const faults = (clip) => clip.events.filter((event) => rank(event) >= 0);
 const boxing = () => json.clips.find(({ clip }) => clip === 'Boxing_Toes.bvh');
 const clipReady = () => page.waitForFunction(() => window.spherechainViewer?.ready);
 const chosen = () => page.locator('.event[aria-pressed=true]').innerText();
@@ -70,7 +71,7 @@ test('a click opens a clip at its worst event, in 3D', async () => {
   await clipReady();
   const list = faults(boxing());
   assert.equal(await page.locator('.event').count(), list.length);
-  const badness = (event) => (event.class === 'penetration' ? 1e6 : 0) + event.depth_mm; // before any deep fold
+  const badness = (event) => 1e6 * rank(event) + event.depth_mm;
   const worst = list.reduce((a, b) => (badness(b) > badness(a) ? b : a));
   assert.equal(await page.evaluate(() => spherechainViewer.frame), worst.deepest);
   assert.match(await chosen(), new RegExp(`${Math.round(worst.depth_mm)} mm`));

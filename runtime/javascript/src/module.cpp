@@ -26,7 +26,7 @@ static_assert(sizeof(sc_body_def) == 5 * 4 && offsetof(sc_body_def, finds_steps)
 static_assert(sizeof(sc_triangle) == 3 * 4 && sizeof(sc_filter) == 2 * 4);
 static_assert(sizeof(sc_pose) == 9 * 4 && offsetof(sc_pose, morph_weights) == 4 * 4);
 static_assert(sizeof(sc_transform) == 10 * 4 && offsetof(sc_transform, scale) == 7 * 4);
-static_assert(sizeof(sc_rule) == 14 * 4 && offsetof(sc_rule, deep_fold) == 13 * 4);
+static_assert(sizeof(sc_rule) == 15 * 4 && offsetof(sc_rule, inside) == 14 * 4);
 static_assert(sizeof(sc_query) == 14 * 4 && offsetof(sc_query, rule) == 6 * 4 && offsetof(sc_query, radius) == 12 * 4);
 static_assert(sizeof(sc_ground) == 6 * 4 && offsetof(sc_ground, height) == 3 * 4);
 static_assert(sizeof(sc_penetrations) == 3 * 4 && sizeof(sc_steps) == 2 * 4);
@@ -34,9 +34,10 @@ static_assert(sizeof(sc_contacts) == 8 * 4 && offsetof(sc_contacts, triangles) =
 static_assert(sizeof(sc_sphere_pairs) == 5 * 4 && offsetof(sc_sphere_pairs, pairs) == 2 * 4);
 static_assert(sizeof(sc_part_contact) == 9 * 4 && offsetof(sc_part_contact, low) == 3 * 4);
 static_assert(sizeof(sc_triangle_contact) == 12 * 4 && offsetof(sc_triangle_contact, from) == 6 * 4);
-static_assert(sizeof(sc_penetration) == 44 * 4 && offsetof(sc_penetration, direction) == 4 * 4);
+static_assert(sizeof(sc_penetration) == 46 * 4 && offsetof(sc_penetration, direction) == 4 * 4);
 static_assert(offsetof(sc_penetration, centre) == 8 * 4 && offsetof(sc_penetration, deepest) == 17 * 4);
 static_assert(offsetof(sc_penetration, measures) == 31 * 4 && offsetof(sc_measures, relation) == 11 * 4);
+static_assert(offsetof(sc_measures, through) == 14 * 4);
 static_assert(sizeof(sc_step_contact) == 11 * 4 && offsetof(sc_step_contact, triangle_a) == 6 * 4);
 
 namespace {

@@ -128,8 +128,8 @@ const struct = fields => {
   };
 };
 // The place of what `maker` made.
-const handle = maker => field(0, null, (place, value, name) => {
-  if (value !== undefined && !handles.has(value)) refuse(`${name}: what ${maker} made is wanted, not ${kindOf(value)}`);
+const handle = (maker, type) => field(0, null, (place, value, name) => {
+  if (value !== undefined && !(handles.has(value) && value instanceof type())) refuse(`${name}: what ${maker} made is wanted, not ${kindOf(value)}`);
   words[place / 4] = value === undefined ? 0 : handles.get(value);
 });
 // The place of a copy, in a room of its own.
@@ -145,7 +145,7 @@ const copied = (sizeOf, write) => {
 const copiedFloats = () => copied(value => 4 * value.length, (place, value) => floats.set(value, place / 4));
 
 const vec3 = vector(0, 0, 0), side = choice(null, 'left', 'right');
-const CLASSES = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration'], classOf = choice(...CLASSES);
+const CLASSES = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration', 'inside'], classOf = choice(...CLASSES);
 const Info = struct({
   sphereCount: int, boneCount: int, partCount: int, morphCount: int, regionCount: int, sourceBufferCount: int, vertexCount: int,
   triangleCount: int, ignoredPairCount: int, writer: text, settings: text, settingsSha256: text, sourceFile: text, sourceSha256: text,
@@ -162,19 +162,20 @@ const StepContact = struct({
 const SkinPoint = struct({ position: vec3, triangle: int, weights: vec3 });
 const Measures = struct({
   depth: float, volume: measured, contourLength: float, visible: float, touching: float, facing: float, restDistance: float,
-  thickness: measured, swallowed: measured, height: float, metre: float,
-  relation: choice('apart', 'near', 'siblings', 'joined', 'two_bodies'), isOnePiece: flag,
+  thickness: measured, extent: measured, height: float, metre: float,
+  relation: choice('apart', 'near', 'siblings', 'joined', 'two_bodies'), isOnePiece: flag, swallowed: float, through: flag,
 });
 const Penetration = struct({
   part: int, other: int, joint: int, kind: classOf, direction: vec3, distance: float, centre: vec3, low: vec3, high: vec3,
   deepest: SkinPoint, deepestOther: SkinPoint, measures: Measures,
 });
 const Rule = struct({
-  version: int, touchDepth: float, touchMetres: float, touchMin: float, touchMax: float, touchTimes: float, swallowed: float,
+  version: int, touchDepth: float, touchMetres: float, touchMin: float, touchMax: float, touchTimes: float, extent: float,
   atRest: float, hidden: float, shell: float, fold: float, neighbours: float, foldFacing: float, deepFold: float,
+  inside: float,
 });
 const BodyDef = struct({
-  maxTriangles: int, maxPenetrations: int, largestOther: handle('createModel()'), findsSteps: flag, allocator: int,
+  maxTriangles: int, maxPenetrations: int, largestOther: handle('createModel()', () => Model), findsSteps: flag, allocator: int,
 });
 const Pose = struct({
   bones: copiedFloats(), boneCount: int, boneLayout: int, boneStride: int, morphWeights: copiedFloats(),
@@ -197,7 +198,7 @@ const history = copied(value => 4 * Penetration.words * checkList(value, 'previo
   for (let i = 0; i < value.length; ++i) Penetration.write(place + 4 * Penetration.words * i, value[i], `previous[${i}]`);
 });
 const Query = struct({
-  scope: choice('apart', 'neighbours', 'all'), detail: choice('quick', 'full'), filter: handle('createFilter()'), ignoredParts: parts(),
+  scope: choice('apart', 'neighbours', 'all'), detail: choice('quick', 'full'), filter: handle('createFilter()', () => Filter), ignoredParts: parts(),
   ignoredPartsOfOther: parts(), partPairs: copied(value => 4 * value.length, (place, value) => words.set(value, place / 4)),
   rule: limits,
   classes: field(0, null, (place, value = [], name) => {

@@ -14,13 +14,13 @@ from . import _native
 _POINT = np.dtype([("position", "f4", 3), ("triangle", "u4"), ("weights", "f4", 3)])
 
 #: Two body parts that intersect, as the C library has them: sc_penetration, and from "depth" on its sc_measures. Lengths
-#: in the pose's units; a volume, thickness or swallowed below zero is not known.
+#: in the pose's units; a volume, thickness or extent below zero is not known.
 PENETRATION = np.dtype([
     ("part", "u4"), ("other", "u4"), ("joint", "u4"), ("kind", "i4"), ("direction", "f4", 3), ("distance", "f4"),
     ("centre", "f4", 3), ("low", "f4", 3), ("high", "f4", 3), ("deepest", _POINT), ("deepest_other", _POINT),
     ("depth", "f4"), ("volume", "f4"), ("contour_length", "f4"), ("visible", "f4"), ("touching", "f4"), ("facing", "f4"),
-    ("rest_distance", "f4"), ("thickness", "f4"), ("swallowed", "f4"), ("height", "f4"), ("metre", "f4"),
-    ("relation", "i4"), ("is_one_piece", "i4")])
+    ("rest_distance", "f4"), ("thickness", "f4"), ("extent", "f4"), ("height", "f4"), ("metre", "f4"),
+    ("relation", "i4"), ("is_one_piece", "i4"), ("swallowed", "f4"), ("through", "i4")])
 
 #: Two body parts whose skins intersect (sc_part_contact), and a box around the triangles that do.
 PART_CONTACT = np.dtype([("part_a", "u4"), ("part_b", "u4"), ("triangle_pairs", "u4"), ("low", "f4", 3), ("high", "f4", 3)])
@@ -45,24 +45,27 @@ _NONE = 0xFFFFFFFF  # no joint; the ground in place of a part
 
 #: The limits of classes (sc_rule), with the library's defaults. `Rule(touch_depth=0.003)`.
 Rule = NamedTuple("Rule", [(name, float) for name in (  # type: ignore[misc]
-    "touch_depth", "touch_metres", "touch_min", "touch_max", "touch_times", "swallowed", "at_rest", "hidden", "shell", "fold",
-    "neighbours", "fold_facing", "deep_fold")])
+    "touch_depth", "touch_metres", "touch_min", "touch_max", "touch_times", "extent", "at_rest", "hidden", "shell", "fold",
+    "neighbours", "fold_facing", "deep_fold", "inside")])
 Rule.__new__.__defaults__ = tuple(_native.Model.default_rule())
 
 
 class Penetration(NamedTuple):
-    """Two body parts whose skins intersect. Lengths in the pose's units, but depth_mm."""
+    """Two body parts that are in each other. Lengths in the pose's units, but depth_mm."""
 
     part: str  #: goes into `other`: the more mobile of the two, a hand in a thigh; of two alike the smaller
     other: str  #: "ground" where it is
     kind: str  #: one of CLASSES
     depth: float  #: the shortest way out
     depth_mm: float  #: the same in millimetres, by the model's metres_per_unit
+    depth_percent: float  #: the same in % of the height
     distance: float  #: `part`, moved so far in `direction`, is free of `other`
     direction: NDArray[np.float32]  #: (3,), of unit length
     joint: Optional[int]  #: moves `part`, into Model.joints
     volume: Optional[float]  #: of the one part inside the other; None where it is not known, and with detail="quick"
     visible: float  #: 0 to 1: the share of the line in which they cross that can be seen from outside
+    swallowed: float  #: 0 to 1: the share of `part` that is inside `other`; 0 where it was not looked at
+    through: bool  #: `part` is inside, and comes out again on the other side
     point: NDArray[np.float32]  #: (3,): the point of `part` that is deepest in `other`
     point_other: NDArray[np.float32]  #: (3,): point_other - point = distance * direction
     centre: NDArray[np.float32]  #: (3,): of the line in which they cross
@@ -71,7 +74,7 @@ class Penetration(NamedTuple):
 
     @property
     def is_fault(self) -> bool:
-        """Whether a person would call it one: a penetration or a deep fold."""
+        """Whether a person would call it one: inside, a penetration or a deep fold."""
         return self.kind in FAULTS
 
 
@@ -117,8 +120,8 @@ class _List(Sequence):
 
 
 class Penetrations(_List):
-    """The penetrations of one pose, faults first, then the deepest first. `total`: how many there are, where a limit lists
-    fewer. `array`: dtype PENETRATION."""
+    """The penetrations of one pose: the worst class first, then the deepest first. `total`: how many there are, where a
+    limit lists fewer. `array`: dtype PENETRATION."""
 
     def __init__(self, array: np.ndarray, names: Tuple, total: int, mm_per_unit: float) -> None:
         super().__init__(array, names)
@@ -128,14 +131,15 @@ class Penetrations(_List):
     def _entry(self, row) -> Penetration:
         return Penetration(
             self._names[0][row["part"]], "ground" if row["other"] == _NONE else self._names[1][row["other"]],
-            CLASSES[row["kind"]], float(row["depth"]), float(row["depth"]) * self._mm_per_unit, float(row["distance"]),
-            row["direction"], None if row["joint"] == _NONE else int(row["joint"]),
-            float(row["volume"]) if row["volume"] >= 0 else None, float(row["visible"]), row["deepest"]["position"],
+            CLASSES[row["kind"]], float(row["depth"]), float(row["depth"]) * self._mm_per_unit,
+            100 * float(row["depth"] / row["height"]), float(row["distance"]), row["direction"],
+            None if row["joint"] == _NONE else int(row["joint"]), float(row["volume"]) if row["volume"] >= 0 else None,
+            float(row["visible"]), float(row["swallowed"]), bool(row["through"]), row["deepest"]["position"],
             row["deepest_other"]["position"], row["centre"], row["low"], row["high"])
 
     @property
     def is_fault(self) -> NDArray[np.bool_]:
-        """Whether each is a penetration or a deep fold: bool (penetrations,)."""
+        """Whether each is a fault: bool (penetrations,)."""
         return self.array["kind"] >= CLASSES.index(FAULTS[0])
 
     @property

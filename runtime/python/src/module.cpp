@@ -77,7 +77,7 @@ PYBIND11_MODULE(_native, module) {
       .value("neighbours", SC_SCOPE_NEIGHBOURS)
       .value("all", SC_SCOPE_ALL);
   py::enum_<PenetrationClass> kinds(module, "Class");
-  for (int kind = SC_CLASS_REST; kind <= SC_CLASS_PENETRATION; ++kind) {
+  for (int kind = SC_CLASS_REST; kind <= SC_CLASS_INSIDE; ++kind) {
     kinds.value(sc_penetration_class_name(static_cast<PenetrationClass>(kind)), static_cast<PenetrationClass>(kind));
   }
   py::class_<LoadedModel> model(module, "Model");

@@ -165,7 +165,7 @@ SkinPoses skin_poses_of(const LoadedModel& model, const py::object& given) {
 // The limits that sc_rule has from its second field on.
 std::vector<float> default_rule() {
   const Rule rule = sc_default_rule();
-  return {&rule.touch_depth, &rule.deep_fold + 1};
+  return {&rule.touch_depth, &rule.inside + 1};
 }
 
 // `query` has the fields of an sc_query by their names. Both sides are (poses before or None, poses).

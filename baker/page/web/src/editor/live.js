@@ -3,7 +3,7 @@ import { load } from 'spherechain';
 import { isFault, keyOf } from '../model/contacts.js';
 import { decode } from '../model/frame_lists.js';
 
-const KINDS = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration']; // the runtime's words for CLASSES of contacts.js
+const KINDS = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration', 'inside']; // the runtime's words for CLASSES of contacts.js
 
 // Whether the page was built with it.
 export const hasRuntime = load !== null;
@@ -18,7 +18,7 @@ export async function openLive(base64, { unitsPerMm }) {
 
   const measure = (found, isQuick) => {
     const kind = KINDS.indexOf(found.kind);
-    const { depth, visible, volume } = found.measures;
+    const { depth, visible, volume, swallowed, through } = found.measures;
     const isUnseen = isQuick && visible === 1 && !isFault({ kind }); // nobody looked
     return {
       parts: [found.part, found.other],
@@ -28,6 +28,8 @@ export async function openLive(base64, { unitsPerMm }) {
       at: [...found.deepest.position],
       visible: isUnseen ? -1 : visible,
       volume: volume === null ? -1 : volume / (10 * unitsPerMm) ** 3,
+      swallowed,
+      through,
     };
   };
 

@@ -7,12 +7,13 @@ export function decode(base64, Type) {
   return new Type(bytes.buffer);
 }
 
-// Pairs of numbers: `of(frame)` is [a, b, a, b, ...]; or entries of another `width`.
-export function pairLists(data, Type, width = 2) {
+// Entries of the same `width`: pairs of numbers, or more. `of(frame)` is [a, b, a, b, ...].
+export function frameLists(data, Type) {
   const counts = decode(data?.counts, Uint32Array);
   const entries = decode(data?.entries, Type);
+  const width = entries.length / Math.max(1, counts.reduce((sum, count) => sum + count, 0));
   const ends = [];
   let end = 0;
   for (const count of counts) ends.push((end += width * count));
-  return { of: (frame) => entries.subarray(frame > 0 ? ends[frame - 1] : 0, ends[frame] ?? 0) };
+  return { width, of: (frame) => entries.subarray(frame > 0 ? ends[frame - 1] : 0, ends[frame] ?? 0) };
 }

@@ -1,6 +1,6 @@
-import { Contacts, MEASURES } from './contacts.js';
+import { Contacts } from './contacts.js';
 import { frameNumber } from '../base/format.js';
-import { decode, pairLists } from './frame_lists.js';
+import { decode, frameLists } from './frame_lists.js';
 
 // The page's data (see ../README.md) as the other modules use it. Lengths are in the source's units.
 
@@ -110,15 +110,15 @@ export function readModel(data) {
   const moved = frames?.spheres ? decode(frames.spheres, Float32Array) : Float32Array.from(spheres.flatMap((s) => s.rest));
   const kinds = ['fit', 'detect'];
   const floats = 3 + kinds.length;
-  const touching = Object.fromEntries(kinds.map((kind) => [kind, pairLists(frames?.[kind], Uint16Array)]));
+  const touching = Object.fromEntries(kinds.map((kind) => [kind, frameLists(frames?.[kind], Uint16Array)]));
   const times = decode(frames?.times, Float32Array);
   const seconds = decode(frames?.seconds, Float32Array);
   const numbers = decode(frames?.numbers, Float32Array);
   const partOf = decode(mesh.parts, Uint8Array);
   const sphereOf = decode(mesh.spheres, Uint16Array);
   const partName = (part) => data.parts[part] ?? 'other parts';
-  const colliderPairs = pairLists(frames?.colliders, Uint16Array);
-  const contactLists = pairLists(frames?.contacts, Uint32Array);
+  const colliderPairs = frameLists(frames?.colliders, Uint16Array);
+  const contactLists = frameLists(frames?.contacts, Uint32Array);
   const clips = data.clips?.length > 0 ? data.clips : [{ name: 'rest pose', first: 0, count: 1, own_count: 1 }];
   return {
     title: data.title,
@@ -160,7 +160,7 @@ export function readModel(data) {
     clips,
     hasPairs: Boolean(frames?.detect),
     pairCount: (kind, frame) => touching[kind].of(frame).length / 2, // spheres that touch
-    contacts: new Contacts(contactLists, partOf, partName, pairLists(frames?.penetrations, Float32Array, MEASURES)),
+    contacts: new Contacts(contactLists, partOf, partName, frameLists(frames?.penetrations, Float32Array)),
 
     // Where the page opens: the deepest fault before a change.
     get start() {

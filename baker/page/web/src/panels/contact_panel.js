@@ -18,7 +18,7 @@ function runs(frames, numberOf) {
 export function fillContactPanel(panel, store, model, flyTo) {
   const summary = h('p', { role: 'status', class: 'summary' });
   const list = h('ol', { class: 'pairs', id: 'frame-contacts' });
-  const order = h('p', { class: 'note' }, 'Faults first, the deepest first. The arrow is the way out: where it ends, the first part is free of the second.');
+  const order = h('p', { class: 'note' }, 'The worst first. The arrow is the way out: where it ends, the first part is free of the second.');
   const clipTitle = h('h3', {});
   const clipList = h('ol', { class: 'pairs', id: 'clip-contacts' });
   const classes = h(
@@ -48,7 +48,7 @@ export function fillContactPanel(panel, store, model, flyTo) {
   const frameRow = (contact, i) => {
     const { key, name, pairs, visible } = contact;
     const title = [plural(pairs, 'triangle pair')];
-    if (visible >= 0) title.push(`${Math.round(100 * visible)} % visible`);
+    if (visible >= 0 && pairs > 0) title.push(`${Math.round(100 * visible)} % visible`);
     if (isHidden(contact)) title.push('most of it cannot be seen from outside');
     const properties = { class: `pair contact${minor(contact)}`, 'data-contact': key, title: title.join(', ') };
     return row(properties, `${i + 1}`, name, what(contact) + millilitres(contact), () => {
@@ -88,7 +88,7 @@ export function fillContactPanel(panel, store, model, flyTo) {
     shown = at;
     const clip = model.clips[at];
     const found = model.contacts.over(clip.first, clip.count);
-    clipTitle.textContent = found.length === 0 ? `No contact in ${clip.name}` : `In the whole of ${clip.name}, the deepest first`;
+    clipTitle.textContent = found.length === 0 ? `No contact in ${clip.name}` : `In the whole of ${clip.name}, the worst first`;
     clipTitle.hidden = clipList.hidden = clip.count < 2;
     clipList.replaceChildren(...found.map(clipRow));
   });

@@ -1,4 +1,5 @@
 import { h } from '../base/dom.js';
+import { insideText } from '../model/contacts.js';
 import { clipLink, readLink } from './links.js';
 import { isAccepted, isFault, onMarks, toggleAccepted } from './marks.js';
 
@@ -12,7 +13,7 @@ const timecode = (frame, fps) => {
   return `${two(Math.floor(seconds / 60))}:${two(seconds % 60)}:${two(Math.floor(frame - seconds * fps))}`;
 };
 
-const CLASSES = { penetration: 'penetration', deep_fold: 'deep fold' };
+const classText = (event) => (event.class === 'inside' ? insideText(event) : event.class.replace('_', ' '));
 
 // The bake's spheres, with the verdict on them: the skin's contacts do not depend on it.
 export function spheresSection(store, fit) {
@@ -67,7 +68,7 @@ export function fillEvents(panel, { rows, row, fit, model, store, flyToContact }
         h('span', { class: 'part-names' }, event.text),
         h('span', { class: 'count' }, millimetres(event.depth_mm)),
         h('span', { class: 'when' }, `${frames}${event.from === event.to ? '' : `, worst at ${event.deepest}`} (${timecode(event.deepest, row.fps)})`),
-        h('span', { class: `when ${event.fails && !isAccepted(row, event) ? 'warning' : ''}` }, `${CLASSES[event.class] ?? event.class}, ${state(event)}${event.volume_ml === undefined ? '' : `, ${event.volume_ml} ml`}`),
+        h('span', { class: `when ${event.fails && !isAccepted(row, event) ? 'warning' : ''}` }, `${classText(event)}, ${state(event)}${event.volume_ml === undefined ? '' : `, ${event.volume_ml} ml`}`),
       ),
       index === chosen && isFault(event) && !event.rule && event.state !== 'accepted' &&
         h('button', { type: 'button', class: 'accept', onclick: () => { toggleAccepted(row, event); draw(); } }, isAccepted(row, event) ? 'Accepted: take back (A)' : 'Accept (A)'),

@@ -3,7 +3,8 @@ import './library.css';
 import { css, fitCanvas, h } from '../base/dom.js';
 import { plural } from '../base/format.js';
 import { characterLink, clipLink } from './links.js';
-import { baseline, download, isAccepted, isFault, onMarks } from './marks.js';
+import { insideText } from '../model/contacts.js';
+import { baseline, download, isAccepted, isFault, onMarks, rankOf } from './marks.js';
 import { followTheme } from './theme.js';
 
 // The library: a row a clip. A row draws its strip once it comes into sight.
@@ -15,7 +16,7 @@ const millimetres = (mm) => (mm < 9.95 ? mm.toFixed(1) : `${Math.round(mm)}`);
 function digest(row, index) {
   const events = (row.events ?? []).filter((event) => event.state !== 'resolved');
   const open = events.filter((event) => isFault(event) && !event.rule);
-  const worst = [...open].sort((a, b) => (b.class === 'penetration') - (a.class === 'penetration') || b.depth_mm - a.depth_mm)[0];
+  const worst = [...open].sort((a, b) => rankOf(b) - rankOf(a) || b.depth_mm - a.depth_mm)[0];
   return {
     ...row,
     index,
@@ -30,6 +31,8 @@ function digest(row, index) {
   };
 }
 
+const kindText = (event) => (event.class === 'inside' ? `${insideText(event)}, ` : event.class === 'deep_fold' ? 'deep fold, ' : '');
+
 const COLUMNS = [
   { name: '', of: null, class: 'picture' },
   { name: 'Character', of: (row) => row.character },
@@ -37,8 +40,8 @@ const COLUMNS = [
   { name: 'Frames', of: (row) => row.frames ?? -1, class: 'number' },
   { name: 'Depth over time', of: null },
   { name: 'Worst fault', of: (row) => row.worst?.text ?? '' },
-  { name: 'Depth', of: (row) => (row.error ? Infinity : row.mm), class: 'number', title: 'Of the deepest fault, in mm' },
-  { name: 'Faults', of: (row) => row.faults, class: 'number', title: 'Penetrations and deep folds that no rule excuses' },
+  { name: 'Depth', of: (row) => (row.error ? Infinity : row.mm), class: 'number', title: 'Of the worst fault, in mm' },
+  { name: 'Faults', of: (row) => row.faults, class: 'number', title: 'Parts inside others, penetrations and deep folds that no rule excuses' },
   { name: 'New', of: (row) => row.fresh, class: 'number', title: 'Neither in the baseline nor accepted here' },
   { name: 'Fit', of: (row) => row.fit ?? '', title: 'How well the spheres fit the character' },
 ];
@@ -103,7 +106,7 @@ function element(row) {
     h('td', {}, h('a', { href: link }, row.clip)),
     number(row.frames.toLocaleString('en')),
     h('td', {}, strip),
-    h('td', { class: row.worst ? '' : 'clean' }, row.worst ? `${row.worst.text}, ${row.worst.class === 'deep_fold' ? 'deep fold, ' : ''}frame ${row.worst.deepest}` : 'clean'),
+    h('td', { class: row.worst ? '' : 'clean' }, row.worst ? `${row.worst.text}, ${kindText(row.worst)}frame ${row.worst.deepest}` : 'clean'),
     number(row.worst ? `${millimetres(row.mm)} mm` : ''),
     number(row.faults || ''),
     h('td', { class: `number${row.fresh > 0 ? ' warning' : ''}` }, row.fresh || (row.faults > 0 ? '0' : '')),
