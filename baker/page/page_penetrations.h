@@ -28,8 +28,8 @@ class FrameLists {
 };
 
 // The part that goes in, the other one, class, depth in mm, direction out, the deepest point of the part, the share
-// that is visible or -1, volume in ml or -1.
-using PenetrationEntry = std::array<float, 12>;
+// that is visible or -1, volume in ml or -1, the share that is inside, 1 where it comes out again.
+using PenetrationEntry = std::array<float, 14>;
 inline std::vector<PenetrationEntry> entries_of(const std::vector<Penetration>& penetrations, double mm) {
   std::vector<PenetrationEntry> out;
   for (const Penetration& p : penetrations) {
@@ -37,7 +37,8 @@ inline std::vector<PenetrationEntry> entries_of(const std::vector<Penetration>& 
     const spherechain::Vec3 &d = p.direction, &at = p.deepest.position;
     out.push_back({static_cast<float>(p.part), static_cast<float>(p.other), static_cast<float>(p.kind),
                    static_cast<float>(mm * double{p.measures.depth}), d.x, d.y, d.z, at.x, at.y, at.z,
-                   p.measures.visible, static_cast<float>(ml)});
+                   p.measures.visible, static_cast<float>(ml), p.measures.swallowed,
+                   static_cast<float>(p.measures.through)});
   }
   return out;
 }

@@ -71,7 +71,7 @@ struct StepContacts {
 };
 StepContacts find_contacts(StepJob job);
 
-// Of each sphere the part of the same body that holds its centre, or kOutside.
+// The part of the same body that holds each sphere's centre, or kOutside.
 std::vector<std::uint16_t> find_inside(const Asset& asset, const Pose& pose, Target target);
 
 // The same for the measure of contacts; nothing where it fails.

@@ -9,7 +9,7 @@
 namespace spherechain {
 namespace {
 
-constexpr int kMostHalves = 4;         // of six
+constexpr int kHalvesMin = 4;         // of six
 constexpr std::size_t kShortAxis = 2;  // most characters stand along y, and are thinnest along z
 
 int middle_of(int a, int b, int c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); }
@@ -143,7 +143,7 @@ class Tester {
         }
       });
     }
-    return count >= kMostHalves ? nearest : kOutside;
+    return count >= kHalvesMin ? nearest : kOutside;
   }
 
   template <typename T>

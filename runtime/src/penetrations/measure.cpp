@@ -23,6 +23,8 @@ constexpr double kFar = 100;                                // no pose is as lar
 constexpr std::uint64_t kCovered = std::uint64_t{1} << 31;  // bit of a contact's place in its list
 constexpr double kAreaError = 0.03;  // if the contour has another area than the skin inside, the volume is not known
 
+std::size_t most_runs(const SkinData& skin) { return skin.part_runs.size + skin.sizes.clusters; }
+
 struct Memory {
   PosedSkin own, other;  // the latter of two bodies alone
   Skins skins;
@@ -31,11 +33,13 @@ struct Memory {
   Span<std::uint64_t> keys;
   Span<Segment3> segments;
   Span<TriangleRun> side_a, side_b;  // of a part that meets itself
+  Span<TriangleRun> around;          // of the parts around one that is inside
 
   explicit Memory(bool are_one) : skins{own, are_one ? own : other} {}
 
-  std::size_t lay_out(const SkinSizes& a, const SkinSizes& b, std::size_t contact_count, std::uint64_t* words,
+  std::size_t lay_out(const SkinData& skin_a, const SkinData& skin_b, std::size_t contact_count, std::uint64_t* words,
                       Sweep& sweep) {
+    const SkinSizes &a = skin_a.sizes, &b = skin_b.sizes;
     WordMemory memory(words);
     own.take(memory, a.vertices, a.clusters);
     if (!skins.are_one()) {
@@ -46,6 +50,7 @@ struct Memory {
     memory.take(segments, contact_count);
     memory.take(side_a, contact_count);
     memory.take(side_b, contact_count);
+    memory.take(around, std::max(most_runs(skin_a), most_runs(skin_b)));
     sweep.take(memory, a, b);
     return memory.used();
   }
@@ -67,7 +72,7 @@ class Measurer {
         sweep_(memory_.skins, in.rule, gap_) {
     memory_.own.surface = in.a.surface;
     memory_.other.surface = in.b.surface;
-    memory_.lay_out(in.a.asset->skin().sizes, in.b.asset->skin().sizes, in.contacts.size, in.scratch, sweep_);
+    memory_.lay_out(in.a.asset->skin(), in.b.asset->skin(), in.contacts.size, in.scratch, sweep_);
   }
 
   Status run(std::size_t& found) {
@@ -231,10 +236,11 @@ class Measurer {
   struct TwoParts {
     Span<Segment3> all;
     std::size_t a, b;
-    Contour contour;  // of what a person sees
-    bool swaps;       // b is named first
-    double side;      // of a square like the smaller part
-    double swallowed = 0;
+    Contour contour;          // of what a person sees
+    bool swaps;               // b is named first
+    double side;              // of a square like the smaller part
+    double swallowed = 0;     // share of the one that is inside the other
+    bool b_is_inner = false;  // it is b
     bool passes_through = false;
   };
 
@@ -252,17 +258,17 @@ class Measurer {
     return out;
   }
 
-  // Of two parts of one body the one is named first that is inside the other.
+  // The part that is inside the other is named first, where both are of one body.
   void set_swallowed(TwoParts& parts) const {
     const double a = core_a_.swallowed(parts.a, parts.b), b = core_b_.swallowed(parts.b, parts.a);
     const double limit = double{in_.limits.inside};
     if (in_.are_one && std::max(a, b) >= limit && a != b) {
       parts.swaps = b > a;
     }
-    const bool is_of_b = in_.are_one ? parts.swaps : b > a;
-    parts.swallowed = is_of_b ? b : a;
+    parts.b_is_inner = in_.are_one ? parts.swaps : b > a;
+    parts.swallowed = parts.b_is_inner ? b : a;
     parts.passes_through =
-        is_of_b ? core_b_.passes_through(parts.b, parts.a) : core_a_.passes_through(parts.a, parts.b);
+        parts.b_is_inner ? core_b_.passes_through(parts.b, parts.a) : core_a_.passes_through(parts.a, parts.b);
   }
 
   // Parts that are inside another, where no triangles meet.
@@ -278,9 +284,10 @@ class Measurer {
       parts.b = in_.are_one || is_of_b ? part : holder.part;
       parts.swaps = in_.are_one;
       if (is_wanted(parts)) {
+        parts.b_is_inner = in_.are_one || is_of_b;
         parts.swallowed = holder.share;
         parts.passes_through = core.passes_through(part, holder.part);
-        keep_worst(in_.out, measure_enclosed(parts, in_.are_one || is_of_b), found);
+        keep_worst(in_.out, measure_enclosed(parts), found);
         ++found;
       }
     }
@@ -298,15 +305,63 @@ class Measurer {
     return !have_met && (in_.part_pairs == nullptr || (in_.part_pairs[place / 64] >> place % 64 & 1) != 0);
   }
 
-  // The way out is clear of all of the other part: nothing says on which side of it a free place is outside.
-  Penetration measure_enclosed(TwoParts& parts, bool is_of_b) {
+  // The triangles of the outer part and of those that it hangs together with: the inner one may come out of them, too.
+  // What hangs together with the inner one, where both are of one body, is left out.
+  Span<const TriangleRun> runs_around(const TwoParts& parts) {
+    const Surface& surface = parts.b_is_inner ? surface_a_ : surface_b_;
+    const AssetView& asset = parts.b_is_inner ? *in_.a.asset : *in_.b.asset;
+    const std::size_t outer = parts.b_is_inner ? parts.a : parts.b, inner = parts.b_is_inner ? parts.b : parts.a;
+    std::size_t count = 0;
+    for (std::size_t part = 0; part < asset.part_count(); ++part) {
+      const auto is_joined = [&](std::size_t to) {
+        return asset.part(part).parent == static_cast<std::int32_t>(to) ||
+               asset.part(to).parent == static_cast<std::int32_t>(part);
+      };
+      const bool is_own = in_.are_one && (part == inner || is_joined(inner));
+      if (part == outer || (is_joined(outer) && !is_own)) {
+        const Span<const TriangleRun> runs = runs_of(surface, part);
+        std::copy(runs.begin(), runs.end(), memory_.around.data + count);
+        count += runs.size;
+      }
+    }
+    return {memory_.around.data, count};
+  }
+
+  // The way out of one that is inside, clear of all around it: nothing says which free place on the way is outside.
+  Exit parted(const TwoParts& parts, const Double3& previous) {
+    const Span<const TriangleRun> around = runs_around(parts);
+    if (parts.b_is_inner) {
+      sweep_.set_sides(around, runs_of(surface_b_, parts.b), parts.contour.center);
+    } else {
+      sweep_.set_sides(runs_of(surface_a_, parts.a), around, parts.contour.center);
+    }
+    sweep_.set_gap(kFar * height_);
+    const Exit out = parting_exit(sweep_, previous);
+    sweep_.set_gap(gap_);
+    return out;
+  }
+
+  // The greatest radius of the inner part's spheres: a shorter way frees the rim of a contact, but not the core.
+  double core_radius(const TwoParts& parts) const {
+    const Surface& surface = parts.b_is_inner ? surface_b_ : surface_a_;
+    const AssetView& asset = parts.b_is_inner ? *in_.b.asset : *in_.a.asset;
+    float radius = 0;
+    for (std::size_t s = 0; s < surface.sphere_parts.size; ++s) {
+      if (surface.sphere_parts[s] == (parts.b_is_inner ? parts.b : parts.a)) {
+        radius = std::max(radius, asset.spheres()[s].radius);
+      }
+    }
+    return (parts.b_is_inner ? scale_of_b() : scale_of_a()) * double{radius};
+  }
+
+  Penetration measure_enclosed(TwoParts& parts) {
     if (in_.contacts.size == 0) {
       sweep_.clear();
     }
     pose_all_skins();
     Double3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high = -1.0 * low;
-    const PosedSkin& skin = is_of_b ? memory_.skins.b : memory_.skins.a;
-    for (const TriangleRun& run : runs_of(*skin.surface, is_of_b ? parts.b : parts.a)) {
+    const PosedSkin& skin = parts.b_is_inner ? memory_.skins.b : memory_.skins.a;
+    for (const TriangleRun& run : runs_of(*skin.surface, parts.b_is_inner ? parts.b : parts.a)) {
       const std::uint32_t c = run.cluster;
       low = {std::min(low.x, double{skin.low[0][c]}), std::min(low.y, double{skin.low[1][c]}),
              std::min(low.z, double{skin.low[2][c]})};
@@ -315,13 +370,10 @@ class Measurer {
     }
     parts.contour.center = 0.5 * (low + high);
     parts.contour.rest_distance = HUGE_VAL;
-    set_sides(parts.all, parts.contour.center, parts.a, parts.b);
     Penetration out{};
     out.part = static_cast<std::uint32_t>(parts.swaps ? parts.b : parts.a);
     out.other = static_cast<std::uint32_t>(parts.swaps ? parts.a : parts.b);
-    sweep_.set_gap(kFar * height_);
-    out = describe(parts, parting_exit(sweep_, previous_direction(parts, out)), {0, 0}, nullptr);
-    sweep_.set_gap(gap_);
+    out = describe(parts, parted(parts, previous_direction(parts, out)), {0, 0}, nullptr);
     out.low = to_float(low);
     out.high = to_float(high);
     return out;
@@ -349,6 +401,11 @@ class Measurer {
     Double3 previous = previous_direction(parts, out);
     if (is_fault(out.kind) && normalize(previous)) {
       set_way(parts, steady_exit(sweep_, contour, settings, exit, previous), out);
+    }
+    if (out.kind == SC_CLASS_INSIDE && !parts.passes_through && double{out.distance} < core_radius(parts)) {
+      set_way(parts, parted(parts, previous), out);
+      out.measures.depth = out.distance;
+      return out;
     }
     if (!in_.quick) {
       out.measures.volume = volume_of(parts, exit);
@@ -558,7 +615,7 @@ std::size_t measure_words(const AssetView& a, const AssetView& b, bool are_one, 
   Memory memory(are_one);
   const PairRule rule;
   Sweep sweep(memory.skins, rule, 0);
-  return memory.lay_out(a.skin().sizes, b.skin().sizes, contact_count, nullptr, sweep);
+  return memory.lay_out(a.skin(), b.skin(), contact_count, nullptr, sweep);
 }
 
 Status check_contacts(const Meeting& meeting) {

@@ -28,7 +28,7 @@ void corners_at_rest(const Surface& surface, std::size_t triangle, float (&out)[
   }
 }
 
-// Of triangles that have the same corners, as front and back of a double-sided skin, the source's first counts.
+// Some triangles have the same corners, as front and back of a double-sided skin: the first in the source counts.
 void drop_doubles(const Surface& surface, Span<std::uint32_t> order) {
   std::fill(surface.facings.begin(), surface.facings.end(), std::int8_t{1});
   for (std::uint32_t t = 0; t < order.size; ++t) {
