@@ -306,7 +306,7 @@ class Measurer {
   }
 
   // The triangles of the outer part and of those that it hangs together with: the inner one may come out of them, too.
-  // What hangs together with the inner one, where both are of one body, is left out.
+  // The parts that the inner one hangs together with are left out, where both are of one body.
   Span<const TriangleRun> runs_around(const TwoParts& parts) {
     const Surface& surface = parts.b_is_inner ? surface_a_ : surface_b_;
     const AssetView& asset = parts.b_is_inner ? *in_.a.asset : *in_.b.asset;

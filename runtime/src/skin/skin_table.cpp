@@ -72,7 +72,8 @@ std::size_t lay_out(const AssetView& asset, std::uint64_t* words, Surface& out, 
   memory.take(out.facings, sizes.triangles);
   memory.take(out.rest_windings, 3 * asset.spheres().size);
   memory.take(out.sphere_parts, asset.spheres().size);
-  memory.take(vertices.windings.order, sizes.triangles);
+  memory.take(vertices.windings.next, sizes.triangles);
+  memory.take(vertices.windings.first_of_corner, sizes.vertices);
   memory.take(vertices.windings.pieces, sizes.vertices);
   memory.take(vertices.first_bones, sizes.vertices + 1);
   memory.take(vertices.first_weights, sizes.vertices);

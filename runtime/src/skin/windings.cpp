@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "runtime/src/base/double3.h"
 #include "runtime/src/triangles/crossing.h"
@@ -11,15 +12,19 @@
 namespace spherechain {
 namespace {
 
-using Welds = std::uint32_t[3];
-
 // A triangle's corners by their places at rest, ascending.
-void sorted_welds(const Surface& surface, std::uint32_t triangle, Welds& out) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    out[k] = surface.welds[surface.triangle_vertices[3 * std::size_t{triangle} + k]];
+struct Welds {
+  std::uint32_t low, middle, high;
+
+  Welds(const Surface& surface, std::uint32_t triangle) {
+    const std::uint32_t* const v = surface.triangle_vertices.data + 3 * std::size_t{triangle};
+    const std::uint32_t a = surface.welds[v[0]], b = surface.welds[v[1]], c = surface.welds[v[2]];
+    low = std::min(std::min(a, b), c);
+    high = std::max(std::max(a, b), c);
+    middle = std::max(std::min(a, b), std::min(std::max(a, b), c));
   }
-  std::sort(out, out + 3);
-}
+  bool operator==(const Welds& other) const { return low == other.low && middle == other.middle && high == other.high; }
+};
 
 void corners_at_rest(const Surface& surface, std::size_t triangle, float (&out)[3][3]) {
   for (std::size_t k = 0; k < 3; ++k) {
@@ -29,28 +34,21 @@ void corners_at_rest(const Surface& surface, std::size_t triangle, float (&out)[
 }
 
 // Some triangles have the same corners, as front and back of a double-sided skin: the first in the source counts.
-void drop_doubles(const Surface& surface, Span<std::uint32_t> order) {
+void drop_doubles(const Surface& surface, const WindingScratch& scratch) {
   std::fill(surface.facings.begin(), surface.facings.end(), std::int8_t{1});
-  for (std::uint32_t t = 0; t < order.size; ++t) {
-    order[t] = t;
-  }
-  const auto is_before = [&](std::uint32_t l, std::uint32_t r) {
-    Welds of_l, of_r;
-    sorted_welds(surface, l, of_l);
-    sorted_welds(surface, r, of_r);
-    const int by_corners = std::lexicographical_compare(of_l, of_l + 3, of_r, of_r + 3)   ? -1
-                           : std::lexicographical_compare(of_r, of_r + 3, of_l, of_l + 3) ? 1
-                                                                                          : 0;
-    return by_corners != 0 ? by_corners < 0 : surface.triangles[l] < surface.triangles[r];
-  };
-  std::sort(order.begin(), order.end(), is_before);
-  for (std::size_t i = 1; i < order.size; ++i) {
-    Welds before, own;
-    sorted_welds(surface, order[i - 1], before);
-    sorted_welds(surface, order[i], own);
-    if (std::equal(before, before + 3, own)) {
-      surface.facings[order[i]] = 0;
+  // Triangles in lists, by their lowest corner.
+  std::fill(scratch.first_of_corner.begin(), scratch.first_of_corner.end(), kNoPlace);
+  for (std::uint32_t t = 0; t < surface.triangles.size; ++t) {
+    const Welds own(surface, t);
+    std::uint32_t& first = scratch.first_of_corner[own.low];
+    for (std::uint32_t other = first; other != kNoPlace; other = scratch.next[other]) {
+      if (surface.facings[other] != 0 && own == Welds(surface, other)) {
+        const bool is_later = surface.triangles[t] > surface.triangles[other];
+        surface.facings[is_later ? t : other] = 0;
+        break;
+      }
     }
+    scratch.next[t] = std::exchange(first, t);
   }
 }
 
@@ -106,6 +104,14 @@ bool meets(const Surface& surface, std::size_t cluster, const float (&from)[3], 
   return true;
 }
 
+// Does a triangle lie all on one side of the line, along that axis?
+bool is_beside(const Surface& surface, std::size_t triangle, float from, std::size_t axis) {
+  const std::uint32_t* const v = surface.triangle_vertices.data + 3 * triangle;
+  const float* const at = surface.rest_positions.data + axis;
+  const float p = at[3 * std::size_t{v[0]}], q = at[3 * std::size_t{v[1]}], r = at[3 * std::size_t{v[2]}];
+  return (p > from && q > from && r > from) || (p < from && q < from && r < from);
+}
+
 int winding_at_rest(const Surface& surface, const float (&from)[3], std::size_t axis) {
   int out = 0;
   for (std::size_t c = 0; c < surface.clusters.size; ++c) {
@@ -115,6 +121,10 @@ int winding_at_rest(const Surface& surface, const float (&from)[3], std::size_t 
     const Cluster& cluster = surface.clusters[c];
     for (std::size_t t = cluster.first_triangle; t < cluster.first_triangle + std::size_t{cluster.triangle_count};
          ++t) {
+      if (is_beside(surface, t, from[(axis + 1) % 3], (axis + 1) % 3) ||
+          is_beside(surface, t, from[(axis + 2) % 3], (axis + 2) % 3)) {
+        continue;
+      }
       float corners[3][3];
       corners_at_rest(surface, t, corners);
       const Crossing crossing = cross_line(corners, from, axis);
@@ -144,7 +154,7 @@ std::uint8_t part_of(const Surface& surface, std::size_t sphere, std::uint32_t (
 }  // namespace
 
 void find_windings(const AssetView& asset, const Surface& surface, const WindingScratch& scratch) {
-  drop_doubles(surface, scratch.order);
+  drop_doubles(surface, scratch);
   turn_pieces(surface, scratch.pieces);
   std::uint32_t counts[256];
   for (std::size_t s = 0; s < asset.spheres().size; ++s) {

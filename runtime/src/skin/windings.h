@@ -11,8 +11,9 @@ struct PieceSum {
   double middle[3], area, volume;
 };
 struct WindingScratch {
-  Span<std::uint32_t> order;  // a triangle's
-  Span<PieceSum> pieces;      // a vertex'
+  Span<std::uint32_t> next;             // a triangle's
+  Span<std::uint32_t> first_of_corner;  // a vertex'
+  Span<PieceSum> pieces;                // a vertex'
 };
 
 // Fills Surface::facings, rest_windings and sphere_parts, from a table that is filled but for these.

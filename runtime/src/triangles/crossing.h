@@ -20,6 +20,12 @@ inline Crossing cross_line(const float (&corners)[3][3], const float (&from)[3],
     p[k] = double{corners[k][u]} - double{from[u]};
     q[k] = double{corners[k][v]} - double{from[v]};
   }
+  const auto misses = [](const double(&of)[3]) {
+    return (of[0] > 0 && of[1] > 0 && of[2] > 0) || (of[0] < 0 && of[1] < 0 && of[2] < 0);
+  };
+  if (misses(p) || misses(q)) {
+    return {};
+  }
   double turns[3];  // around the origin, along the edge opposite to each corner
   int left = 0, right = 0;
   for (std::size_t k = 0; k < 3; ++k) {
