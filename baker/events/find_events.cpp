@@ -118,7 +118,7 @@ Event EventFinder::event_of(const ClipFrames& clip, const ClipEvents& found, con
   event.depth_mm = mm_ * double{worst.measures.depth};
   event.depth_percent = 100 * double{worst.measures.depth} / animated_.frame().height;
   if (worst.measures.volume >= 0) event.volume_ml = std::pow(mm_ / 10, 3) * double{worst.measures.volume};
-  event.swallowed = double{worst.measures.swallowed};
+  event.swallowed = std::round(1e4 * double{worst.measures.swallowed}) / 1e4;
   event.passes_through = worst.measures.through != 0;
   event.direction = to_vec3(worst.direction);
   event.point = to_vec3(worst.deepest.position);

@@ -108,7 +108,7 @@ PartCounts PartContacts::add(int frame, const std::vector<Pair>& triangles,
       contact.frame_of_depth_max = number;
       contact.direction = found.direction;
       contact.kind = found.kind;
-      contact.swallowed = double{found.measures.swallowed};
+      contact.swallowed = std::round(1e4 * double{found.measures.swallowed}) / 1e4;
       contact.passes_through = found.measures.through != 0;
     }
   }

@@ -152,7 +152,7 @@ namespace Spherechain
         DeepFold = 4,
         /// <summary>everything else: a fault</summary>
         Penetration = 5,
-        /// <summary>the middle of the one part is inside the other: a fault</summary>
+        /// <summary>the middle of the one part is inside the other, or goes through it: a fault</summary>
         Inside = 6,
     }
 
@@ -270,7 +270,7 @@ namespace Spherechain
         public int IsOnePiece;
         /// <summary>0 to 1: of the spheres' centres of `part` the share that is inside `other`; where that holds most of them, inside any part. 0 where they were not looked at</summary>
         public float Swallowed;
-        /// <summary>1: `part` is inside, and its limb comes out again on the other side</summary>
+        /// <summary>1: some of `part` is inside, and its limb comes out again on the other side</summary>
         public int Through;
     }
 
@@ -300,7 +300,7 @@ namespace Spherechain
         public float FoldFacing;
         /// <summary>deep fold: a fold within one piece of skin is deeper than this</summary>
         public float DeepFold;
-        /// <summary>inside: at least this share of the part is swallowed</summary>
+        /// <summary>inside: at least this share of the part is swallowed; or it comes out again</summary>
         public float Inside;
     }
 

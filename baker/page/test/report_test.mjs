@@ -87,7 +87,7 @@ test('an event in 3D has the base colours of the file, and the spheres with thei
   const coloured = await picture(page);
   const change = async () => compare(coloured, await picture(page));
   await page.keyboard.press('x');
-  assert.ok((await change()) > 0.1);
+  assert.ok((await change()) > 0.03);
   await page.keyboard.press('x');
   assert.ok((await change()) < 0.01);
   assert.match(await page.locator('#verdict').innerText(), /fit: (good|fair|poor)/);

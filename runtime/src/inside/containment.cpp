@@ -3,7 +3,14 @@
 
 #include <algorithm>
 
+#include "runtime/src/base/pair_bits.h"
+
 namespace spherechain {
+namespace {
+
+constexpr std::size_t kLimbMost = 128;  // spheres; a body of more has no limbs
+
+}  // namespace
 
 Containment::Containment(const AssetView& asset, const Surface& surface, const std::uint16_t* inside)
     : asset_(asset), surface_(surface), inside_(inside) {
@@ -54,30 +61,51 @@ double Containment::swallowed(std::size_t part, std::size_t other) const {
   return static_cast<double>(held) / static_cast<double>(all);
 }
 
+// Without the spheres that are inside, does the limb fall into more pieces? Neighbours on the body hang together.
 bool Containment::passes_through(std::size_t part, std::size_t other) const {
-  for (std::size_t c = 0; inside_ != nullptr && c < asset_.chain_count(); ++c) {
-    std::size_t region = kOutside;
-    enum { kBefore, kOut, kIn, kThrough } state = kBefore;
-    for (const std::uint32_t s : asset_.chain(c).spheres) {
-      if (!is_core(surface_, s)) {
-        continue;
+  std::size_t limb[kLimbMost], count = 0, region = kOutside;
+  bool is_held = false;
+  for (std::size_t s = 0; inside_ != nullptr && s < surface_.sphere_parts.size; ++s) {
+    if (surface_.sphere_parts[s] == part && inside_[s] == other && is_core(surface_, s)) {
+      region = asset_.spheres()[s].region;
+      is_held = true;
+    }
+  }
+  for (std::size_t s = 0; is_held && s < surface_.sphere_parts.size; ++s) {
+    if (asset_.spheres()[s].region == region && is_core(surface_, s)) {
+      if (count == kLimbMost) {
+        return false;
       }
-      if (asset_.spheres()[s].region != region) {
-        region = asset_.spheres()[s].region;
-        state = kBefore;
-      }
-      const bool is_in = inside_[s] != kOutside;
-      state = !is_in                                              ? (state == kIn        ? kThrough
-                                                                     : state == kThrough ? kThrough
-                                                                                         : kOut)
-              : state == kOut && surface_.sphere_parts[s] == part && inside_[s] == other ? kIn
-                                                                  : state;
-      if (state == kThrough) {
-        return true;
+      limb[count++] = s;
+    }
+  }
+  const Span<const std::size_t> all{limb, count};
+  return is_held && pieces_of(all, true) > pieces_of(all, false);
+}
+
+std::size_t Containment::pieces_of(Span<const std::size_t> limb, bool but_inside) const {
+  std::size_t piece[kLimbMost], count = 0;
+  const auto is_left = [&](std::size_t i) { return !but_inside || inside_[limb[i]] == kOutside; };
+  for (std::size_t i = 0; i < limb.size; ++i) {
+    piece[i] = i;
+  }
+  const auto root = [&](std::size_t i) {
+    while (piece[i] != i) {
+      i = piece[i];
+    }
+    return i;
+  };
+  for (std::size_t i = 0; i < limb.size; ++i) {
+    count += is_left(i) ? 1 : 0;
+    for (std::size_t j = 0; is_left(i) && j < i; ++j) {
+      const std::size_t bit = ignored_bit(limb[j], limb[i]);  // ascending
+      if (is_left(j) && (asset_.ignored()[bit / 64] >> bit % 64 & 1) != 0 && root(i) != root(j)) {
+        piece[std::max(root(i), root(j))] = std::min(root(i), root(j));
+        --count;
       }
     }
   }
-  return false;
+  return count;
 }
 
 }  // namespace spherechain

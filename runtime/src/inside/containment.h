@@ -19,10 +19,13 @@ class Containment {
   Holder holder_of(std::size_t part) const;
   // The share of a part's core that `other` holds; where that is its holder, that any part holds.
   double swallowed(std::size_t part, std::size_t other) const;
-  // Does the limb come out again: is some of its core outside on both sides of this part's that `other` holds?
+  // Does the limb come out again behind `other`, which holds some of the part's core?
   bool passes_through(std::size_t part, std::size_t other) const;
 
  private:
+  // Counts the pieces in which these spheres, ascending, hang together; `but_inside`: without those that are inside.
+  std::size_t pieces_of(Span<const std::size_t> limb, bool but_inside) const;
+
   const AssetView& asset_;
   const Surface& surface_;
   const std::uint16_t* inside_;

@@ -9,7 +9,7 @@
 namespace spherechain {
 namespace {
 
-constexpr int kHalvesMin = 4;         // of six
+constexpr int kHalvesMin = 4;          // of six
 constexpr std::size_t kShortAxis = 2;  // most characters stand along y, and are thinnest along z
 
 int middle_of(int a, int b, int c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); }

@@ -40,8 +40,8 @@ HWY_INLINE void cross_cluster(const PosedClusters& skin, std::size_t cluster, co
   }
 }
 
-// Looks with a box as thin as the line. Targets may find different triangles that the line misses; none misses a triangle
-// that it crosses.
+// Looks with a box as thin as the line. Targets may find different triangles that the line misses; none misses a
+// triangle that it crosses.
 void follow_line(const PosedClusters& skin, const Line& line, Crossings& found) {
   if (!skin.has_sphere_boxes) {
     bound(skin);

@@ -195,7 +195,9 @@ TEST_CASE("play tells which body parts touch, in which frames, and how the spher
   CHECK(clip["fps"] == 30);
   REQUIRE(clip["contacts"].size() > 1);
   std::set<int> with_contact;
-  const auto is_fault_class = [](const json& of) { return of["class"] == "penetration" || of["class"] == "deep_fold"; };
+  const auto is_fault_class = [](const json& of) {
+    return of["class"] == "inside" || of["class"] == "penetration" || of["class"] == "deep_fold";
+  };
   int faults = 0;
   std::set<int> with_fault;
   for (const json& frame : found["frames"]) {

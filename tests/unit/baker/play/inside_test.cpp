@@ -63,11 +63,12 @@ TEST_CASE("a ball that goes into another is inside from where its middle is, and
   }
 }
 
-TEST_CASE("a rod through a ball goes through it, and one whose end is inside does not") {
-  const TwoShapes rod(ball(1.6, 12), capsule(0.1, 1.8, 8));
-  const Penetration through = only(rod.ask(shifted(0, 0, 0)));
-  CHECK(through.kind == SC_CLASS_INSIDE);
-  CHECK(through.measures.through == 1);
-  const Penetration end = only(rod.ask(shifted(0, 0.9, 0)));
-  CHECK(end.measures.through == 0);
+TEST_CASE("of a rod through a ball the share of its spheres is inside that is nearer than the ball's skin") {
+  const TwoShapes rod(ball(1.6, 12), capsule(0.1, 3, 8));
+  const Penetration middle = only(rod.ask(shifted(0, 0, 0)));
+  CHECK(middle.part == 1);
+  CHECK(middle.kind == SC_CLASS_PENETRATION);
+  CHECK(middle.measures.swallowed == doctest::Approx(1.6 / 3).epsilon(0.2));
+  CHECK(only(rod.ask(shifted(0, 3, 0))).measures.swallowed == doctest::Approx(1.6 / 6).epsilon(0.3));
+  CHECK(only(rod.ask(shifted(1.65, 0, 0))).measures.swallowed == 0);
 }
