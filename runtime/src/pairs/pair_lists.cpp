@@ -18,14 +18,13 @@ std::size_t fill(const PairChoice& choice, const TilePlace& place, const PairLis
   std::uint16_t* wanted = buffers.wanted;
   ListedPair* strips = buffers.strips;
   for (TwoBlocks blocks(place); blocks.first_column() < place.column_count; blocks.advance()) {
-    const std::size_t left = place.column_count - blocks.first_column();
     const std::size_t a = place.first_column + blocks.first_column();
-    const std::uint64_t columns = ~std::uint64_t{0} >> (left < 2 * kBlock ? 64 - left : 64 - 2 * kBlock);
     const std::size_t first_row = blocks.first_row(), both = first_row + blocks.single_rows();
-    std::uint64_t before = place.is_diagonal() ? 1 : ~std::uint64_t{0};  // columns before the row
+    std::uint64_t before =
+        place.is_diagonal() ? 1 : ~std::uint64_t{0};  // the columns before the row: the tile has them all
     std::size_t b = place.first_row + first_row, bit = ignored_bit(a, b);
     for (std::size_t row = first_row; row < place.row_count; ++row, ++b) {
-      const std::uint64_t bits = columns & before & ~bits_at(ignored.data, ignored.size, bit);
+      const std::uint64_t bits = before & ~bits_at(ignored.data, ignored.size, bit);
       bit += b;
       before = before << 1 | 1;
       *wanted++ = static_cast<std::uint16_t>(bits);
@@ -67,13 +66,12 @@ std::size_t fill_strips(Target resolved, const PairChoice& choice, const TilePla
 
 std::size_t move_rest_pairs(Span<const RestPair>& rest_pairs, const TilePlace& place, const PairListBuffers& buffers) {
   const PairListBuffers to = buffers;
-  const std::size_t column_count = place.column_count, row_count = place.row_count;
   TwoBlocks blocks(place);
   std::size_t count = 0;
   const RestPair *pair = rest_pairs.begin(), *const end = rest_pairs.end();
   for (; pair < end && count < to.rest_room; ++pair) {
     const std::size_t column = pair->a - place.first_column, row = pair->b - place.first_row;
-    if (column >= column_count || row >= row_count) {
+    if (row >= place.row_count) {
       continue;
     }
     while (column >= blocks.first_column() + 2 * kBlock) {  // rest pairs are sorted

@@ -46,8 +46,8 @@ struct PairListBuffers {
 std::size_t fill_strips(Target resolved, const PairChoice& choice, const TilePlace& place,
                         const PairListBuffers& buffers);
 
-// Moves rest pairs out of `wanted` to the list of rest pairs, as long as it has room. Returns how long the list is, and
-// leaves in `rest_pairs` those it has not come to.
+// Moves rest pairs, those of the tile's columns, out of `wanted` to the list of rest pairs, as long as it has room.
+// Returns how long the list is, and leaves in `rest_pairs` those it has not come to.
 std::size_t move_rest_pairs(Span<const RestPair>& rest_pairs, const TilePlace& place, const PairListBuffers& buffers);
 
 }  // namespace spherechain

@@ -83,7 +83,7 @@ bool is_fold(const Rule& rule, const Measures& of) {
 
 bool depends_on_extent(const Rule& rule, const Measures& of) {
   Measures all = of, none = of;
-  all.extent = 2 * rule.extent;
+  all.extent = rule.extent;
   none.extent = 0;
   return classify(rule, all) != classify(rule, none);
 }

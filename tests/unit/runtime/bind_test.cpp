@@ -121,7 +121,7 @@ TEST_CASE("where a joint's name differs in case and punctuation alone, the messa
 TEST_CASE("another rest pose, and a transposed layout, are found while binding; rounding is not") {
   Rig rig;
   float* const place = &rig.binds[16 * 2 + 12];  // bone3's translation
-  *place += 1e-4F;
+  *place += 1.2e-3F;                             // less than a thousandth of the height
   CHECK(rig.bind() == SC_OK);
   *place += 0.1F;
   CHECK(rig.bind() == sc_status{SC_OTHER_BIND, SC_FIELD_JOINTS});
@@ -172,17 +172,20 @@ TEST_CASE("a gathered palette has the asset's order and layout, and the identity
 }
 
 TEST_CASE("placed bones move what they moved, by the transform") {
-  // A quarter turn about z, twice as large, then along x.
-  const Transform place{{3, 0, 0}, {0, 0, 0.7071068F, 0.7071068F}, {2, 2, 2}};
+  // Stretches along each axis, then a quarter turn about (2, 3, 6), then a shift.
+  const double axis[3] = {2 / 7.0, 3 / 7.0, 6 / 7.0}, shift[3] = {3, -1, 2};
+  const Transform place{{3, -1, 2}, {0.2020305F, 0.3030458F, 0.6060915F, 0.7071068F}, {2, 3, 4}};
   const std::vector<Matrix> bones = random_bones(6);
   std::vector<Matrix> placed = bones;
   REQUIRE(sc_place_bones(&place, placed[0].data(), placed.size()) == SC_OK);
   for (std::size_t b = 0; b < bones.size(); ++b) {
     for (std::size_t column = 0; column < 4; ++column) {
-      const float x = bones[b][column], y = bones[b][4 + column], z = bones[b][8 + column];
-      CHECK(placed[b][column] == doctest::Approx(-2 * y + (column == 3 ? 3 : 0)));
-      CHECK(placed[b][4 + column] == doctest::Approx(2 * x));
-      CHECK(placed[b][8 + column] == doctest::Approx(2 * z));
+      const double v[3] = {2.0 * bones[b][column], 3.0 * bones[b][4 + column], 4.0 * bones[b][8 + column]};
+      const double along = axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2];
+      for (std::size_t k = 0, l = 1, m = 2; k < 3; ++k, l = m, m = 3 - k - l) {
+        const double turned = axis[k] * along + axis[l] * v[m] - axis[m] * v[l];
+        CHECK(placed[b][4 * k + column] == doctest::Approx(turned + (column == 3 ? shift[k] : 0)));
+      }
     }
   }
   placed = bones;
@@ -215,7 +218,22 @@ TEST_CASE("gathering names what it cannot use and writes nothing") {
   CHECK(gather([](Pose& p) { p.bone_layout = SC_LAYOUT_UNSET; }) == sc_status{SC_BAD_VALUE, SC_FIELD_BONE_LAYOUT});
   CHECK(gather([](Pose& p) { p.bone_stride = 44; }) == sc_status{SC_BAD_STRIDE, SC_FIELD_BONE_STRIDE});
   CHECK(gather([](Pose& p) { p.bone_count = 5; }) == sc_status{SC_TOO_SMALL, SC_FIELD_BONE_COUNT});
+  auto* const askew = reinterpret_cast<float*>(reinterpret_cast<std::uintptr_t>(out.data()) + 2);
+  CHECK(sc_gather_bones(&rig.opened->asset, map, &good, askew) == sc_status{SC_MISALIGNED, SC_FIELD_OUTPUT});
   CHECK(out == std::vector<float>(12 * kRigBones, 7));
+}
+
+TEST_CASE("a pose's scale is that of its root part, and 1 where it is no size or differs by rounding") {
+  AssetParts parts = Rig().tiny.parts;
+  parts.parts[0].bone = -1;  // the root is the first part with a bone
+  const OpenedAsset opened(parts);
+  REQUIRE_MESSAGE(opened.status == SC_OK, opened.message);
+  const std::pair<float, double> sizes[] = {{2, 2}, {1.9995F, 1.9995}, {1.0005F, 1}, {0, 1}, {kNan, 1}, {kInfinity, 1}};
+  for (const auto& [size, expected] : sizes) {
+    std::vector<Matrix> bones(kRigBones, kIdentity);
+    bones[1] = {size, 0, 0, 0, 0, 0, -size, 0, 0, size, 0, 0};
+    CHECK(scale_of(opened.view(), pose_of(bones)) == doctest::Approx(expected));
+  }
 }
 
 TEST_CASE("in the bind pose all bones have the model's matrix; the first that has not is named") {

@@ -555,6 +555,29 @@ TEST_CASE("a model without triangles has spheres, and no answer about its skin")
   CHECK(body.bounds(low, high) == sc_status{SC_NOT_IN_ASSET, SC_FIELD_ASSET});
 }
 
+TEST_CASE("bounds from vertices are those of the finite ones") {
+  const Winding winding;
+  const Model model = winding.model();
+  Body body(model);
+  std::vector<float> vertices = winding.tiny.rest;
+  Vec3 low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
+  for (std::size_t v = 3; v < vertices.size(); v += 3) {
+    low = {std::min(low.x, vertices[v]), std::min(low.y, vertices[v + 1]), std::min(low.z, vertices[v + 2])};
+    high = {std::max(high.x, vertices[v]), std::max(high.y, vertices[v + 1]), std::max(high.z, vertices[v + 2])};
+  }
+  Pose pose;
+  pose.vertices = vertices.data();
+  pose.vertex_count = vertices.size() / 3;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::fill_n(vertices.begin(), 3, 9.0F);
+    vertices[axis] = kInfinity;
+    REQUIRE(body.set_pose(pose) == SC_OK);
+    Vec3 found[2];
+    CHECK(body.bounds(found[0], found[1]) == SC_OK);
+    CHECK(same_bits<Vec3>({found[0], found[1]}, {low, high}));
+  }
+}
+
 TEST_CASE("a model that cannot be made is null, and the message says why") {
   const Winding winding;
   const std::vector<std::uint8_t>& bytes = winding.opened->bytes;
@@ -612,10 +635,6 @@ TEST_CASE("a question with a wrong argument finds nothing and names the field") 
   query.rule = &rule;
   CHECK(body.penetrations(query).count == 0);
   CHECK(body.status() == sc_status{SC_BAD_VALUE, SC_FIELD_RULE});
-  query = {};
-  query.scope = static_cast<Scope>(7);
-  CHECK(body.penetrations(query).count == 0);
-  CHECK(body.status() == sc_status{SC_BAD_VALUE, SC_FIELD_SCOPE});
   body.steps();
   CHECK(body.status() == sc_status{SC_NOT_OPEN, SC_FIELD_BODIES});
   REQUIRE(body.set_pose(pose_of(bones)) == SC_OK);
@@ -624,24 +643,27 @@ TEST_CASE("a question with a wrong argument finds nothing and names the field") 
   body.contacts(body);
   CHECK(body.status() == sc_status{SC_ALIASED, SC_FIELD_BODIES});
   const std::vector<std::uint64_t> no_parts(4, 0);
-  query = {};
-  query.ignored_parts = no_parts.data();
-  body.contacts(query);
-  CHECK(body.status() == sc_status{SC_BAD_VALUE, SC_FIELD_IGNORED_PARTS});
-  query = {};
-  query.detail = static_cast<Detail>(7);
-  body.penetrations(query);
-  CHECK(body.status() == sc_status{SC_BAD_VALUE, SC_FIELD_QUERY});
-  query = {};
-  query.classes = 1U << 31;
-  body.penetrations(query);
-  CHECK(body.status() == sc_status{SC_BAD_VALUE, SC_FIELD_QUERY});
+  const auto refuses = [&](sc_field field, const auto& spoil) {
+    query = {};
+    spoil(query);
+    CHECK(body.contacts(query).part_count == 0);
+    CHECK(body.status() == sc_status{SC_BAD_VALUE, field});
+    CHECK(body.penetrations(query).count == 0);
+    CHECK(body.status() == sc_status{SC_BAD_VALUE, field});
+  };
+  refuses(SC_FIELD_SCOPE, [](Query& q) { q.scope = static_cast<Scope>(7); });
+  refuses(SC_FIELD_IGNORED_PARTS, [&](Query& q) { q.ignored_parts = no_parts.data(); });
+  refuses(SC_FIELD_QUERY, [](Query& q) { q.detail = static_cast<Detail>(7); });
+  refuses(SC_FIELD_QUERY, [](Query& q) { q.classes = 1U << 31; });
   query = {};
   query.part_pairs = no_parts.data();
   body.steps(query);
   CHECK(body.status() == sc_status{SC_BAD_VALUE, SC_FIELD_PART_PAIRS});
   body.below({{0, 1, 0}, 0, nullptr, nullptr}, query);
   CHECK(body.status() == sc_status{SC_BAD_VALUE, SC_FIELD_PART_PAIRS});
+  Vec3 low, high;
+  CHECK(sc_get_bounds(body.handle(), nullptr, &high) == sc_status{SC_NULL, SC_FIELD_OUTPUT});
+  CHECK(sc_get_bounds(body.handle(), &low, nullptr) == sc_status{SC_NULL, SC_FIELD_OUTPUT});
   const Body none;
   CHECK(body.penetrations(none).count == 0);
   CHECK(body.status() == sc_status{SC_NULL, SC_FIELD_BODIES});

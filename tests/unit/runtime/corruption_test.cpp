@@ -8,7 +8,7 @@
 #include <string>
 
 #include "sphere_chains_generated.h"
-#include "tiny_bones.h"
+#include "tiny_skin.h"
 
 namespace spherechain::test {
 namespace {
@@ -112,10 +112,7 @@ TEST_CASE("a wrong header, frame or fit is refused") {
       {"frame: left, up and forward are not", [](AssetParts& p) { p.left.x = 1.01F; }},
       {"frame: left, up and forward are not", [](AssetParts& p) { p.left.x = -1.0F; }},
       {"frame: left, up and forward are not", [](AssetParts& p) { p.up = p.left; }},
-      {"frame: left, up and forward are not",
-       [](AssetParts& p) {
-         p.forward = {0, 0, 3e38F};
-       }},
+      {"frame: left, up and forward are not", [](AssetParts& p) { p.forward.z = 3e38F; }},
       {"fit.phi1: missing", [](AssetParts& p) { p.without = "fit.phi1"; }},
       {"fit.phi1_adjusted: missing", [](AssetParts& p) { p.without = "fit.phi1_adjusted"; }},
       {"fit.phi2: missing", [](AssetParts& p) { p.without = "fit.phi2"; }},
@@ -172,6 +169,69 @@ TEST_CASE("a figure that makes no sense is refused") {
       {"joints[0].tail: missing", [](AssetParts& p) { p.without = "joints.tail"; }},
       {"joints[2].tail: not finite", [](AssetParts& p) { p.joints[2].tail.x = kNan; }},
   });
+}
+
+TEST_CASE("a figure out of all proportion to the body is refused, and one just within its limit is not") {
+  TinyAsset tiny = random_asset(12, 1);
+  const TinySkin skin = add_bones(tiny, 5, 2);
+  add_skin(tiny, &skin, 4);
+  tiny.parts.skin.positions[0] = -4;  // how far the skin reaches from the frame's origin
+  for (RestSphere& sphere : tiny.parts.spheres) sphere.pivot_spread = 0.25F;
+  for (Moment& moment : tiny.parts.moments.moments) moment = {};
+  constexpr double kFar = 256 * 1.75;
+  const double size = static_cast<double>(build(tiny.parts).size());
+  struct Limit {
+    const char* message;
+    double most;
+    void (*set)(AssetParts& parts, float value);
+  };
+  using P = AssetParts;
+  const Limit limits[] = {
+      {"source.metres_per_unit", 1e12, [](P& p, float v) { p.metres_per_unit = v; }},
+      {"source.metres_per_unit", 1e12, [](P& p, float v) { p.metres_per_unit = 1 / v; }},
+      {"source.triangle_count", 65536 + size, [](P& p, float v) { p.triangle_count = static_cast<std::uint32_t>(v); }},
+      {"frame.height", 64 * 4, [](P& p, float v) { p.height = v; }},
+      {"skin.positions[2]", kFar, [](P& p, float v) { p.skin.positions[6] = v; }},
+      {"spheres[3].center", kFar, [](P& p, float v) { p.spheres[3].center.z = v; }},
+      {"spheres[3].radius", kFar, [](P& p, float v) { p.spheres[3].pivot_spread = v; }},
+      {"spheres[3].radius", kFar, [](P& p, float v) { p.spheres[3].radius = p.spheres[3].detect_radius = v; }},
+      {"spheres[3].detect_radius", 4096, [](P& p, float v) { p.spheres[3].radius = p.spheres[3].detect_radius / v; }},
+      {"spheres[3].pivot_spread", 4096,
+       [](P& p, float v) { p.spheres[3].pivot_spread = p.spheres[3].detect_radius / v; }},
+      {"pivots[5].weight", 16, [](P& p, float v) { p.pivots[5].weight = -v; }},
+      {"joints[1].position", kFar, [](P& p, float v) { p.joints[1].position.x = v; }},
+      {"joints[1].position", kFar, [](P& p, float v) { p.joints[1].tail.x = v; }},
+      {"bones[1].inverse_bind", 1e6, [](P& p, float v) { p.bones[1].inverse_bind[10] = v; }},
+      {"bones[1].inverse_bind", 1e6 * (kFar + 0.25), [](P& p, float v) { p.bones[1].inverse_bind[11] = v; }},
+      {"moments.origin", kFar, [](P& p, float v) { p.moments.origin.x = v; }},
+      {"moments.centers[2]", 16, [](P& p, float v) { p.moments.centers[2].w = v; }},
+      {"moments.centers[2]", 16 * 8, [](P& p, float v) { p.moments.centers[2].y = v; }},
+      {"moments.moments[4]", 16 * 32 * 32, [](P& p, float v) { p.moments.moments[4].values[0] = v; }},
+      {"moments.moments[4]", 16 * 32 * 4, [](P& p, float v) { p.moments.moments[4].values[3] = v; }},
+      {"moments.moments[4]", 16 * 4 * 4, [](P& p, float v) { p.moments.moments[4].values[15] = v; }},
+      {"skin.morphs[1].delta", kFar, [](P& p, float v) { p.skin.morphs[1].delta.y = v; }},
+      {"skin.boxes[1]", kFar, [](P& p, float v) { p.skin.boxes[1].x[3] = v; }},
+      {"skin.boxes[1]", kFar, [](P& p, float v) { p.skin.boxes[1].radius[3] = v; }},
+      {"skin.boxes[1]", kFar, [](P& p, float v) { p.skin.boxes[1].half_x[0] = v; }},
+      {"skin.boxes[1]", kFar, [](P& p, float v) { p.skin.boxes[1].half_y[1] = v; }},
+      {"skin.boxes[1]", kFar, [](P& p, float v) { p.skin.boxes[1].half_z[2] = v; }},
+      {"skin.bounds_morphs[1]", kFar, [](P& p, float v) { p.skin.bounds_morphs[1].radius[2] = v; }},
+      {"skin.bounds_terms[1]", 2, [](P& p, float v) { p.skin.bounds_terms[1].weights[2] = v; }},
+      {"skin.bounds_terms[1]", 2, [](P& p, float v) { p.skin.bounds_terms[1].deviations[2] = v; }},
+      {"skin.hulls[3]", kFar, [](P& p, float v) { p.skin.hulls[3].center.x = v; }},
+      {"skin.hulls[3]", kFar, [](P& p, float v) { p.skin.hulls[3].radius = v; }},
+      {"skin.hulls[3]", kFar, [](P& p, float v) { p.skin.hulls[3].slack = v; }},
+      {"skin.hull_bones[4]", kFar, [](P& p, float v) { p.skin.hull_bones[4].x = v; }},
+      {"skin.hull_bones[4]", 2, [](P& p, float v) { p.skin.hull_bones[4].w = v; }},
+  };
+  std::vector<Corruption> corruptions;
+  for (const Limit& limit : limits) {
+    AssetParts within = tiny.parts;
+    limit.set(within, static_cast<float>(0.999 * limit.most));
+    CHECK(OpenedAsset(within).message == "");
+    corruptions.push_back({limit.message, [&](P& p) { limit.set(p, static_cast<float>(1.001 * limit.most)); }});
+  }
+  check_each(tiny.parts, corruptions);
 }
 
 TEST_CASE("an array of the wrong length is refused") {
@@ -262,9 +322,7 @@ TEST_CASE("tables for refit by moments that are not sound are refused") {
       {".pairs: " + count(m.pairs) + " of them, but " + std::to_string(m.pairs.size() + 1) + " in the batches",
        change([](Moments& t) { t.batches[1].pair_count += 1; })},
       {".pairs: ", change([](Moments& t) { t.pairs.pop_back(); })},
-      {".pairs: ", change([](Moments& t) {
-         t.pairs.push_back({4, 4});
-       })},
+      {".pairs: ", change([](Moments& t) { t.pairs.emplace_back(); })},
       {".spheres: 12 of them, but 13 in the batches", change([](Moments& t) { t.batches[1].sphere_count += 1; })},
       {".spheres: 12 of them, but ", change([](Moments& t) { t.batches[1].sphere_count = 0xFFFFFFFFU; })},
       {".spheres: 11 of them, but 12 in the asset", change([](Moments& t) { t.spheres.pop_back(); })},

@@ -11,19 +11,6 @@
 namespace spherechain::test {
 namespace {
 
-// FNV-1a over the pairs' numbers and where each frame ends.
-struct Fnv {
-  std::uint64_t hash = 14695981039346656037U;
-
-  void add(std::uint32_t value) {
-    for (int shift = 0; shift < 32; shift += 8) hash = (hash ^ (value >> shift & 0xFF)) * 1099511628211U;
-  }
-  void add(const std::vector<Pair>& pairs) {
-    for (const Pair& pair : pairs) add(pair.a), add(pair.b);
-    add(0xFFFFFFFFU);
-  }
-};
-
 // A job's bits, by the formula of the header.
 std::vector<std::uint64_t> bits_of(const std::vector<Pair>& pairs, std::size_t n) {
   std::vector<std::uint64_t> words((n * (n - 1) / 2 + 63) / 64);
@@ -60,22 +47,6 @@ TEST_CASE("the pairs are a plain loop's, at every size from 1 to 140 and some mo
     }
   }
   CHECK(found > 40000);  // the comparison above was not of empty lists
-}
-
-TEST_CASE("the pairs of a thousand frames hash to the same value on every target and every machine") {
-  const OpenedAsset opened(random_asset(74, 1).parts);
-  for (const Target target : supported_targets()) {
-    INFO(std::string(sc_target_name(target)));
-    std::mt19937 random(1);
-    Fnv chains, all_pairs;
-    for (int frame = 0; frame < 1000; ++frame) {
-      const std::vector<Sphere> spheres = random_spheres(74, random);
-      chains.add(PlainDetection(opened.view(), SC_RADIUS_DETECT).chains(spheres.data()).pairs);
-      all_pairs.add(detect(opened.asset, spheres, SC_RADIUS_FIT, target).pairs);
-    }
-    CHECK(chains.hash == 12491407778378117761U);
-    CHECK(all_pairs.hash == 8351330327361619244U);
-  }
 }
 
 TEST_CASE("by chains a pair is found once, and once a chain in chain order with repeats") {

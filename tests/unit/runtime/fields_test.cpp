@@ -297,7 +297,7 @@ TEST_CASE("a search for skin contacts names what it cannot use") {
       {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.spheres = s.output<Pair>(399); }},
       {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.parts = as<PartContact>(scratch.data()); }},
       {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.scratch = table.data(); }},
-      {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.spheres = as<Pair>(s.matrices.data()); }},
+      {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.spheres = as<Pair>(&s.matrices.back()); }},
       {SC_ALIASED, SC_FIELD_OUTPUT,
        [&](J& j) {
          j.filter = &owned.filter;

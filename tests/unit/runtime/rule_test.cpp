@@ -39,17 +39,18 @@ TEST_CASE("a class changes at its limit, and what is measured beyond that change
     float below, above;
     PenetrationClass class_below, class_above;
   };
+  const auto below = [](float limit) { return std::nextafter(limit, 0.0F); };
   const Row rows[] = {
-      {&Measures::touching, 0.49F, 0.5F, SC_CLASS_PENETRATION, SC_CLASS_REST},
-      {&Measures::visible, 0.29F, 0.31F, SC_CLASS_SHELL, SC_CLASS_PENETRATION},
+      {&Measures::touching, below(0.5F), 0.5F, SC_CLASS_PENETRATION, SC_CLASS_REST},
+      {&Measures::visible, below(0.3F), 0.3F, SC_CLASS_SHELL, SC_CLASS_PENETRATION},
       {&Measures::depth, 0.0033F, 0.0034F, SC_CLASS_TOUCH, SC_CLASS_PENETRATION},  // 0.19 % of the height, above 3 mm
-      {&Measures::rest_distance, 0.054F, 0.056F, SC_CLASS_FOLD, SC_CLASS_PENETRATION},
+      {&Measures::rest_distance, below(0.055F), 0.055F, SC_CLASS_FOLD, SC_CLASS_PENETRATION},
   };
   Measures thin = hand_in_thigh();
   thin.depth = 0.02F;
-  thin.extent = 0.249F;
+  thin.extent = below(0.25F);
   CHECK(classify(thin) == SC_CLASS_TOUCH);
-  thin.extent = 0.251F;
+  thin.extent = 0.25F;
   CHECK(classify(thin) == SC_CLASS_PENETRATION);
   for (const Row& row : rows) {
     Measures of = hand_in_thigh();
@@ -63,7 +64,7 @@ TEST_CASE("a class changes at its limit, and what is measured beyond that change
 
 TEST_CASE("a fold depends on how the parts hang together, and is a fault once it is deep") {
   Measures of = hand_in_thigh();
-  of.rest_distance = 0.1F;
+  of.rest_distance = std::nextafter(0.11F, 0.0F);
   CHECK(classify(of) == SC_CLASS_PENETRATION);
   of.relation = SC_RELATION_SIBLINGS;
   CHECK(classify(of) == SC_CLASS_FOLD);
@@ -71,6 +72,8 @@ TEST_CASE("a fold depends on how the parts hang together, and is a fault once it
   CHECK(classify(of) == SC_CLASS_PENETRATION);
   of.facing = 0.3F;  // a thigh lies flat on the abdomen
   CHECK(classify(of) == SC_CLASS_FOLD);
+  of.rest_distance = 0.11F;
+  CHECK(classify(of) == SC_CLASS_PENETRATION);
   of.relation = SC_RELATION_JOINED;
   of.rest_distance = 0.3F;
   CHECK(classify(of) == SC_CLASS_FOLD);

@@ -65,15 +65,9 @@ TEST_CASE("vertices, influences and morphs that are not sound are refused") {
           {"skin.sources[3]: missing, or past", [](S& s) { s.sources[3] = 144; }},
           {"skin.sources[143]: missing, or past", [](S& s) { s.sources.pop_back(); }},
           {"skin.sources: more of them", [](S& s) { s.sources.push_back(0); }},
-          {"skin.welds[0]: missing, or past",
-           [](S& s) {
-             s.welds = {144, 0};
-           }},
+          {"skin.welds[0]: missing, or past", [](S& s) { s.welds.assign(2, 144); }},
           {"skin.welds[0]: missing, or past", [](S& s) { s.welds = {5}; }},
-          {"skin.welds[0]: not the lowest",
-           [](S& s) {
-             s.welds = {5, 5};
-           }},
+          {"skin.welds[0]: not the lowest", [](S& s) { s.welds.assign(2, 5); }},
           {"skin.welds[1]: not the lowest",
            [](S& s) {
              s.welds = {5, 2, 5, 3};

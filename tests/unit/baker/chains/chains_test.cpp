@@ -12,6 +12,8 @@ using namespace spherechain::baker;
 
 namespace {
 
+using Ids = std::vector<std::uint32_t>;
+
 // A made-up body: torso levels with spheres on these sides, a head, limbs of the given lengths.
 Spheres stick_figure(int levels, const std::vector<std::size_t>& limbs, int head = 0,
                      const std::vector<Side>& sides = {Side::kLeft, Side::kRight}) {
@@ -42,7 +44,6 @@ TEST_CASE("the rule gives the paper's Table 1 for a biped") {
   // 0..7 torso (even left), 8 9 left arm, 10 11 right arm, 12 13 left leg, 14 15 right leg; roots first.
   const Chains chains = build_chains(stick_figure(4, {2, 2, 2, 2}), kBiped);
   REQUIRE(chains.chains.size() == 6);
-  using Ids = std::vector<std::uint32_t>;
   CHECK(chains.chains[0].spheres == Ids{9, 8, 6, 4, 2, 0, 12, 13});       // R0 L R2
   CHECK(chains.chains[1].spheres == Ids{11, 10, 7, 5, 3, 1, 14, 15});     // R1 R R3
   CHECK(chains.chains[2].spheres == Ids{9, 8, 6, 7, 10, 11});             // R0 T R1
@@ -62,7 +63,6 @@ TEST_CASE("the paper's 46 spheres make its 138 chain entries, 136 as sets") {
 TEST_CASE("the head is in every chain with an arm, and T stays the top level of the torso proper") {
   // 0..3 torso, 4 neck, 5 head, then limbs of one: 6 7 arms, 8 9 legs.
   const Chains chains = build_chains(stick_figure(2, {1, 1, 1, 1}, 2), kBiped);
-  using Ids = std::vector<std::uint32_t>;
   CHECK(chains.chains[0].spheres == Ids{6, 5, 4, 2, 0, 8});     // R0 head L R2
   CHECK(chains.chains[2].spheres == Ids{6, 5, 4, 2, 3, 7});     // R0 head T R1
   CHECK(chains.chains[3].spheres == Ids{8, 0, 1, 9});           // R2 D R3: legs only
@@ -73,7 +73,6 @@ TEST_CASE("a torso sphere in the middle of its level is on both sides") {
   // Three a level: 0 1 2 below, 3 4 5 above (left, middle, right); 6 7 arms, 8 9 legs.
   const Chains chains =
       build_chains(stick_figure(2, {1, 1, 1, 1}, 0, {Side::kLeft, Side::kNone, Side::kRight}), kBiped);
-  using Ids = std::vector<std::uint32_t>;
   CHECK(chains.chains[0].spheres == Ids{6, 4, 3, 1, 0, 8});  // R0 L R2
   CHECK(chains.chains[1].spheres == Ids{7, 5, 4, 2, 1, 9});  // R1 R R3
   CHECK(chains.chains[2].spheres == Ids{6, 3, 4, 5, 7});     // R0 T R1
@@ -110,8 +109,10 @@ TEST_CASE("a chain is a set, and every sphere is in some chain") {
   CHECK(seen.size() == bake.spheres.spheres.size());
 }
 
-TEST_CASE("k limbs make k(k-1)/2 chains") {
-  const Chains three =
-      build_chains(stick_figure(2, {2, 2, 2}), {{0, Side::kLeft, 1}, {1, Side::kRight, 1}, {2, Side::kLeft, 0}});
-  CHECK(three.chains.size() == 3);
+TEST_CASE("with a limb in the middle a chain goes along the other limb's side") {
+  const auto chain = [](Side upper, Side lower) {  // 0 1 below, 2 3 above (left, right); 4 and 5 the limbs
+    return build_chains(stick_figure(2, {1, 1}), {{0, upper, 1}, {1, lower, 0}}).chains.at(0).spheres;
+  };
+  CHECK(chain(Side::kLeft, Side::kNone) == Ids{4, 2, 0, 5});
+  CHECK(chain(Side::kNone, Side::kRight) == Ids{4, 3, 1, 5});
 }
