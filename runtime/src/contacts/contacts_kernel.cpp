@@ -12,9 +12,9 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "runtime/src/contacts/contacts_kernel.cpp"
+#include "runtime/src/clusters/blocks.h"
 #include "runtime/src/clusters/bounds_of_two.h"
 #include "runtime/src/clusters/bounds_on_demand.h"
-#include "runtime/src/clusters/blocks.h"
 #include "runtime/src/contacts/pair_list.h"
 #include "runtime/src/contacts/single_precision.h"
 #include "runtime/src/simd/highway.h"

@@ -9,8 +9,8 @@
 #define SPHERECHAIN_SKIN_SINGLE_PRECISION_H
 #endif
 
-#include "runtime/src/clusters/posed_clusters.h"
 #include "runtime/src/clusters/blocks.h"
+#include "runtime/src/clusters/posed_clusters.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

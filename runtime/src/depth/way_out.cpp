@@ -206,7 +206,8 @@ Exit parting_exit(Sweep& sweep, const Double3& wanted) {
   Search search(sweep, none, 1, true);
   sweep.keep_near(HUGE_VAL);
   for (int k = 0; k < 27; ++k) {
-    search.refine({double(k % 3 - 1), double(k / 3 % 3 - 1), double(k / 9 - 1)}, 0);
+    const int x = k % 3 - 1, y = k / 3 % 3 - 1, z = k / 9 - 1;
+    search.refine({double(x), double(y), double(z)}, 0);
   }
   Double3 direction = wanted;
   if (normalize(direction)) {

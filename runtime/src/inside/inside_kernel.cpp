@@ -52,9 +52,9 @@ void follow_line(const PosedClusters& skin, const Line& line, Crossings& found) 
     thin.high[axis] = axis == line.axis && line.goes_up ? FLT_MAX : line.from[axis];
   }
   const BoxProbe box(thin);
-  for (std::size_t first = 0; first < skin.sphere_count; first += kLanes) {
-    for (std::uint64_t bits = box.touching(skin.spheres, first, skin.sphere_count - first); bits != 0;
-         bits &= bits - 1) {
+  const std::size_t count = skin.sphere_count;
+  for (std::size_t first = 0; first < count; first += kLanes) {
+    for (std::uint64_t bits = box.touching(skin.spheres, first, count - first); bits != 0; bits &= bits - 1) {
       const std::size_t sphere = first + lowest_bit(bits), end = skin.first_cluster[sphere + 1];
       bound_once(skin, sphere);
       for (std::size_t c = skin.first_cluster[sphere]; c < end; c += kLanes) {
