@@ -90,6 +90,9 @@ struct BoxProbe {
   }
   // Bit k: box i + k touches; `count` boxes are left.
   HWY_INLINE std::uint64_t touching(const BoxColumns& columns, std::size_t i, std::size_t count) const {
+    if (count == 0) {
+      return 0;
+    }
     const std::uint64_t lanes = ~std::uint64_t{0} >> (64 - (count < kLanes ? count : kLanes));
     return ~bits_of(misses(columns, i)) & lanes;
   }
