@@ -55,8 +55,9 @@ ordered_json penetrations_json(const AnimatedAsset& animated, const std::vector<
   };
   const auto known = [](double value) { return value >= 0 ? ordered_json(value) : ordered_json(); };
   std::vector<Penetration> worst_first = penetrations;
-  std::stable_sort(worst_first.begin(), worst_first.end(),
-                   [](const auto& l, const auto& r) { return l.kind > r.kind; });
+  std::stable_sort(worst_first.begin(), worst_first.end(), [](const Penetration& l, const Penetration& r) {
+    return l.kind != r.kind ? l.kind > r.kind : l.measures.depth > r.measures.depth;
+  });
   ordered_json out = ordered_json::array();
   for (const Penetration& found : worst_first) {
     const double ml = std::pow(mm / 10, 3) * double{found.measures.volume};

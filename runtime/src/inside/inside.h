@@ -20,7 +20,6 @@ struct InsideTest {
   const Surface& surface;
   Span<const Sphere> centers;
   Span<const std::uint64_t> asked;  // a bit a sphere: the others are outside
-  const AssetView& skin_asset;
   PosedClusters& skin;
   bool are_one;
   Target target;             // resolved

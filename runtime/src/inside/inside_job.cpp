@@ -48,7 +48,6 @@ void InsideJob::run() const {
                surface,
                centers,
                {memory.asked.data, memory.asked.size},
-               skin_asset,
                memory.skin,
                are_one,
                target,

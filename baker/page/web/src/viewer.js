@@ -83,6 +83,7 @@ const shown = {
   skin: true,
   skinOpacity: 1,
   look: true, // its base colours
+  paint: true, // on the skin: contacts, their numbers and ways out
   hiddenContacts: true,
   follow: true,
   spheres: false,

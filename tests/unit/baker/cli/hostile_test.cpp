@@ -21,7 +21,7 @@ using tool::run;
 
 }  // namespace
 
-TEST_CASE("numbers that are none are usage errors") {
+TEST_CASE("numbers that are none are usage errors" * doctest::test_suite("long runs")) {
   const TemporaryFolder folder;
   for (const char* number : {"--fps nan", "--fps -nan", "--fps inf", "--fps 0", "--fps -1", "--fps 1e7", "--fps ten",
                              "--frames nan", "--frames -1", "--frames 1.5", "--frames 99999999999999999999"}) {
@@ -62,7 +62,7 @@ TEST_CASE("an empty name, as of a script's variable that is not set, is a usage 
   CHECK(tool::files_in(folder.path) == 0);
 }
 
-TEST_CASE("a file's name need not be UTF-8, the JSON about it is") {
+TEST_CASE("a file's name need not be UTF-8, the JSON about it is" * doctest::test_suite("long runs")) {
   const TemporaryFolder folder;
   const fs::path source = folder.path / "caf\xe9.zae", asset = folder.path / "caf\xe9.sphc";
   fs::copy(kHumanFile, source);
@@ -184,7 +184,7 @@ TEST_CASE("names too long for a file system and folders as outputs end with 3") 
               {"it is a folder"});
 }
 
-TEST_CASE("what is printed and cannot be written ends with 3") {
+TEST_CASE("what is printed and cannot be written ends with 3" * doctest::test_suite("long runs")) {
   const TemporaryFolder folder;
   check_error(run(fmt::format("inspect {} --json >/dev/full", baked_files().asset.string())), 3, {"standard output"});
   check_error(run(fmt::format("inspect {} >/dev/full", baked_files().asset.string())), 3, {"standard output"});

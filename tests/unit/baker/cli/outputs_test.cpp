@@ -255,7 +255,8 @@ TEST_CASE("an output that is a link to nothing yet is what it leads to") {
               {"/nowhere: cannot be created (there is no folder ", "/none)"});
 }
 
-TEST_CASE("each output that is a link stays one, and what it leads to is replaced, if it is of the same kind") {
+TEST_CASE("each output that is a link stays one, and what it leads to is replaced, if it is of the same kind" *
+          doctest::test_suite("long runs")) {
   const TemporaryFolder folder;
   const std::string at = folder.path.string();
   for (const char* output : {"asset", "report", "preview"}) {

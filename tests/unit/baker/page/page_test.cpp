@@ -65,7 +65,8 @@ TEST_CASE("more frames than fit a page that browsers open are refused at the fir
   CHECK(view(advised(many.error), little).error == "");
 }
 
-TEST_CASE("a page is the same byte for byte each time, and no larger than it may be, whatever it is that is large") {
+TEST_CASE("a page is the same byte for byte each time, and no larger than it may be, whatever it is that is large" *
+          doctest::test_suite("long runs")) {
   const std::string page = view(3).page;
   const std::size_t size = page.size(), digits = 1000;  // more than an estimate is off
   CHECK(view(3, size + digits).page == page);

@@ -121,7 +121,8 @@ TEST_CASE("a hand behind the head touches the head") {
 
 TEST_CASE(
     "in frames of two animations and on every target all pairs equal a brute force, and the chains' are some of "
-    "them, counted chain by chain") {
+    "them, counted chain by chain" *
+    doctest::test_suite("long runs")) {
   for (const Bake* bake : {&baked_human(), &paper_baked_human()}) {
     const OpenAsset asset = open_asset_of(*bake);
     for (const Radius kind : {SC_RADIUS_FIT, SC_RADIUS_DETECT}) {

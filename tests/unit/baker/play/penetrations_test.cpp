@@ -207,7 +207,8 @@ TEST_CASE("what a third layer hides is a shell, not a fault") {
   CHECK(hidden.kind == SC_CLASS_SHELL);
 }
 
-TEST_CASE("bodies below suits, or with linings, have the faults of bare ones: the outermost layers alone count") {
+TEST_CASE("bodies below suits, or with linings, have the faults of bare ones: the outermost layers alone count" *
+          doctest::test_suite("long runs")) {
   const auto with_layer = [](const Shape& outer, double scale, bool is_lining) {
     Shape out = outer;
     const auto first = static_cast<std::uint32_t>(outer.positions.size());

@@ -169,7 +169,8 @@ TEST_CASE("a name may be as long as the file system takes, in letters of several
   CHECK(tool::files_in(folder.path) == 2);
 }
 
-TEST_CASE("a file that may not grow (ulimit -f) is one that cannot be written, and none stays") {
+TEST_CASE("a file that may not grow (ulimit -f) is one that cannot be written, and none stays" *
+          doctest::test_suite("long runs")) {
   const TemporaryFolder folder;
   const tool::Run run = tool::run(fmt::format("bake {} -o {}/out.sphc", kHumanFile, folder.path.string()),
                                   "bash -c 'ulimit -f 8; exec \"$0\" \"$@\"'");

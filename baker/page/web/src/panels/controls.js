@@ -70,6 +70,7 @@ export function fillControls(panel, store, model) {
     h('h2', {}, 'Show'),
     h('div', { class: 'row' }, check(store, 'skin', 'Skin', 'S'), slider(store, 'skinOpacity', 'Opacity of the skin')),
     model.look && check(store, 'look', 'Textures', 'X'),
+    check(store, 'paint', 'Paint on contacts', 'R'),
     check(store, 'hiddenContacts', 'Contacts behind the skin', 'H'),
     model.frameCount > 1 && check(store, 'follow', 'Hold the character in place', 'F'),
     model.spheres.length > 0 && h(

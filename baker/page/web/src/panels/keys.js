@@ -29,6 +29,7 @@ export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, dee
     ['0', '0', 'Reset', reset],
     ['S', 's', 'Skin', flip('skin')],
     ['X', 'x', 'Textures', flip('look')],
+    ['R', 'r', 'All paint: contacts, numbers, arrows', flip('paint')],
     ['H', 'h', 'Contacts behind the skin', flip('hiddenContacts')],
     ['F', 'f', 'Hold the character in place', flip('follow')],
     ['B', 'b', 'Spheres', () => store.showSpheres(!store.state.spheres)],

@@ -49,6 +49,7 @@ export function dress(model, state, { skinLayer, sphereLayer, contactLayer, coll
     colliderLayer.group.visible = state.colliders && !state.editing;
     colliderLayer.pose(state.frame, model.overlappingColliders(state.frame), state.colliderOpacity);
   }
+  contactLayer.group.visible = state.paint;
   contactLayer.hidden.visible = state.hiddenContacts;
   contactLayer.fill(model.contacts.now(state.frame), state.contact, state.hiddenParts);
 }

@@ -126,6 +126,7 @@ function radiusInPixels(model, state, project, id) {
 
 // Each contact's number in the list, at its triangles.
 function numberContacts(names, { model, skin, state, project }) {
+  if (!state.paint) return;
   for (const [i, { key, triangles }] of model.contacts.now(state.frame).entries()) {
     if (triangles.every((t) => state.hiddenParts.has(model.mesh.partOf[t]))) continue;
     const [x, y, z, radius] = skin.ballOf(triangles);
