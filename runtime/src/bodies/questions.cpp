@@ -198,8 +198,9 @@ Status find_insides(sc_body& body, const sc_body* other, const sc_query& query, 
   if (!resolve_target(query.target, job.target)) {
     return refuse(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET);
   }
-  job.body = side_of(body, nullptr);
-  job.skin = other == nullptr ? job.body : side_of(*other, nullptr);
+  job.body = side_of(body, query.ignored_parts);
+  job.skin = other == nullptr ? job.body : side_of(*other, query.ignored_parts_of_other);
+  job.filter = query.filter;
   job.are_one = other == nullptr;
   job.centers = {body.spheres.data, body.spheres.size};
   job.pairs = {pairs.pairs, std::min(pairs.pair_count, pairs.pair_capacity)};

@@ -29,8 +29,8 @@ class Winding : public Crossings {
 // The surfaces that a half-line leaves without having entered them: those that its start is inside of.
 class Enclosing : public Crossings {
  public:
-  Enclosing(const InsideTest& test, std::size_t own, int handedness)
-      : test_(test), own_(own), handedness_(handedness) {}
+  Enclosing(const InsideTest& test, std::size_t sphere, int handedness)
+      : test_(test), sphere_(sphere), handedness_(handedness) {}
 
   void add(std::uint32_t triangle, int side, double height) override {
     Entry entry{std::abs(height), triangle, side * test_.skin.surface->facings[triangle] * handedness_ > 0};
@@ -59,7 +59,7 @@ class Enclosing : public Crossings {
           ++entered;
         } else if (entered > 0) {
           --entered;
-        } else if (is_another(test_.skin.surface->parts[half.entries[i].triangle])) {
+        } else if (is_another(half.entries[i].triangle)) {
           part = test_.skin.surface->parts[half.entries[i].triangle];
         }
       }
@@ -82,15 +82,27 @@ class Enclosing : public Crossings {
   static bool is_before(const Entry& l, const Entry& r) {
     return l.distance < r.distance || (!(l.distance > r.distance) && l.triangle < r.triangle);
   }
-  bool is_another(std::size_t of) const {
+  // Pairs that contacts leave out are left out here, too.
+  bool is_another(std::uint32_t triangle) const {
+    const Surface& skin = *test_.skin.surface;
+    const std::size_t of = skin.parts[triangle];
+    if (!test_.are_one) {
+      const std::uint64_t* const ignored = test_.ignored_parts;
+      return ignored == nullptr || (ignored[of / 64] >> of % 64 & 1) == 0;
+    }
+    const std::size_t own = test_.surface.sphere_parts[sphere_], other = skin.triangle_spheres[triangle];
     const auto hangs_on = [&](std::size_t a, std::size_t b) {
       return test_.asset.part(a).parent == static_cast<std::int32_t>(b);
     };
-    return !test_.are_one || (of != own_ && !hangs_on(of, own_) && !hangs_on(own_, of));
+    if (of == own || hangs_on(of, own) || hangs_on(own, of) || other == sphere_) {
+      return false;
+    }
+    const std::size_t bit = ignored_bit(std::min(sphere_, other), std::max(sphere_, other));
+    return (test_.skin.ignored[bit / 64] >> bit % 64 & 1) == 0;
   }
 
   const InsideTest& test_;
-  std::size_t own_;
+  std::size_t sphere_;
   int handedness_;
   Half halves_[2];
 };
@@ -133,7 +145,7 @@ class Tester {
     double least = HUGE_VAL;
     int count = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      Enclosing enclosing(test_, test_.surface.sphere_parts[sphere], handedness);
+      Enclosing enclosing(test_, sphere, handedness);
       follow_from(sphere, axis, true, enclosing);
       enclosing.for_halves([&](std::uint16_t part, double distance) {
         count += part == kOutside ? 0 : 1;

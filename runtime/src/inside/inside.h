@@ -19,8 +19,9 @@ struct InsideTest {
   const AssetView& asset;  // of the spheres
   const Surface& surface;
   Span<const Sphere> centers;
-  Span<const std::uint64_t> asked;  // a bit a sphere: the others are outside
-  PosedClusters& skin;
+  Span<const std::uint64_t> asked;     // a bit a sphere: the others are outside
+  PosedClusters& skin;                 // with the pairs of spheres that are ignored
+  const std::uint64_t* ignored_parts;  // a bit each of another body's; or null
   bool are_one;
   Target target;             // resolved
   std::int16_t* windings;    // scratch: three a sphere

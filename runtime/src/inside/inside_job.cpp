@@ -43,12 +43,19 @@ void InsideJob::run() const {
       memory.asked[s / 64] |= std::uint64_t{1} << s % 64;
     }
   }
-  set_pose(skin_asset, skin_surface, skin.pose, nullptr, memory.skin);
+  for (std::size_t s = 0; body.ignored_parts != nullptr && s < asset.spheres().size; ++s) {
+    const std::size_t part = surface.sphere_parts[s];
+    if ((body.ignored_parts[part / 64] >> part % 64 & 1) != 0) {
+      memory.asked[s / 64] &= ~(std::uint64_t{1} << s % 64);
+    }
+  }
+  set_pose(skin_asset, skin_surface, skin.pose, filter, memory.skin);
   find_inside({asset,
                surface,
                centers,
                {memory.asked.data, memory.asked.size},
                memory.skin,
+               skin.ignored_parts,
                are_one,
                target,
                memory.windings,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "runtime/src/inside/inside.h"
+#include "spherechain/filter.h"
 
 namespace spherechain {
 
@@ -10,6 +11,7 @@ namespace spherechain {
 struct InsideJob {
   JobBody body, skin;
   bool are_one = true;
+  const Filter* filter = nullptr;  // of one body
   Target target{};
   Span<const Sphere> centers;        // of all of body's spheres, in the pose
   Span<const Pair> pairs;            // of one body: those that touch; other spheres are not looked at

@@ -72,3 +72,14 @@ TEST_CASE("of a rod through a ball the share of its spheres is inside that is ne
   CHECK(only(rod.ask(shifted(0, 3, 0))).measures.swallowed == doctest::Approx(1.6 / 6).epsilon(0.3));
   CHECK(only(rod.ask(shifted(1.65, 0, 0))).measures.swallowed == 0);
 }
+
+TEST_CASE("of two bodies, parts that are ignored are inside nothing and hold nothing") {
+  const TwoShapes balls(ball(1, 12), ball(0.2, 8));
+  const auto inside = shifted(0.3, 0, 0);
+  const std::uint64_t large = 1, small = 2;
+  CHECK(balls.count_inside(inside, large, small) == 1);  // the first body's small ball in the other's large one
+  CHECK(balls.count_inside(inside, small, large) == 1);
+  CHECK(balls.count_inside(inside, large, large) == 1);  // the small balls in each other: the same place
+  CHECK(balls.count_inside(inside, large | small, 0) == 0);
+  CHECK(balls.count_inside(inside, 0, large | small) == 0);
+}

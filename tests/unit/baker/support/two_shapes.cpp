@@ -214,6 +214,23 @@ std::vector<spherechain::Penetration> TwoShapes::ask(const Place& place, const P
   return out;
 }
 
+std::size_t TwoShapes::count_inside(const Place& place, std::uint64_t ignored, std::uint64_t ignored_of_other) const {
+  const std::vector<float> vertices = posed(place, {});
+  spherechain::Pose pose;
+  pose.vertices = vertices.data();
+  pose.vertex_count = vertices.size() / 3;
+  spherechain::Body body(asset_.model()), other(asset_.model());
+  REQUIRE(body.set_pose(pose) == SC_OK);
+  REQUIRE(other.set_pose(pose) == SC_OK);
+  spherechain::Query query;
+  query.classes = 1U << SC_CLASS_INSIDE;
+  query.ignored_parts = &ignored;
+  query.ignored_parts_of_other = &ignored_of_other;
+  const std::size_t count = body.penetrations(other, query).count;
+  REQUIRE(body.status() == SC_OK);
+  return count;
+}
+
 std::vector<spherechain::Penetration> TwoShapes::measure(
     const Place& place, const std::function<void(spherechain::PenetrationJob&)>& change, const Place& both) const {
   const std::vector<float> vertices = posed(place, both);
