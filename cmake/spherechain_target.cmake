@@ -37,7 +37,7 @@ if(MINGW AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 
 # Files that are a plain interface to CGAL. The preset asan checks nothing in them: four fifths of a bake's time under all
-# checks went into CGAL's own code, and these files took a quarter of the build.
+# checks went into CGAL's own code.
 function(spherechain_cgal_sources)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "${SPHERECHAIN_CGAL_FLAGS}")
 endfunction()
