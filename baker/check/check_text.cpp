@@ -33,11 +33,12 @@ std::string counted(int count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
-std::string summary_text(const Summary& s) {
+std::string summary_text(const Summary& s, std::size_t tickets) {
   std::string out =
       fmt::format("{}, {}, {} frames: {}", counted(s.characters, "character", "characters"),
                   counted(s.clips, "clip", "clips"), s.frames, counted(s.penetrations, "penetration", "penetrations"));
   if (s.deep_folds > 0) out += ", " + counted(s.deep_folds, "deep fold", "deep folds");
+  if (tickets > 0) out += " in " + counted(static_cast<int>(tickets), "ticket", "tickets");
   out += fmt::format("; {} new", s.fresh);
   if (s.worse > 0) out += fmt::format(" ({} worse than before)", s.worse);
   if (s.accepted > 0) out += fmt::format(", {} accepted", s.accepted);
@@ -70,24 +71,36 @@ std::string worse_text(const EvaluatedEvent& evaluated) {
   return evaluated.before_mm < 0 ? std::string() : fmt::format("worse than {:.0f} mm", evaluated.before_mm);
 }
 
-std::string check_text(const Verdict& verdict, bool lists_accepted) {
+std::string check_text(const Verdict& verdict, bool only_new) {
   std::vector<std::array<std::string, 4>> rows;
   std::array<std::size_t, 4> widths{};
+  const auto add = [&](const char* indent, const EvaluatedClip& clip, const EvaluatedEvent& evaluated) {
+    const Event& event = evaluated.event;
+    const std::string percent =
+        evaluated.state == EventState::kResolved ? "" : fmt::format(", {:.1f} %", event.depth_percent);
+    const std::string worst = event.from == event.to || evaluated.state == EventState::kResolved
+                                  ? ""
+                                  : fmt::format("  (worst at {})", frame_text(event.deepest));
+    rows.push_back({indent + clip_text(clip), frames_text(event), parts_text(event),
+                    fmt::format("{:.0f} mm{}{}{}", event.depth_mm, percent, worst, marks(evaluated))});
+    for (std::size_t k = 0; k < 3; ++k) widths[k] = std::max(widths[k], rows.back()[k].size());
+  };
+  for (const Ticket& ticket : verdict.tickets) {
+    bool is_first = true;
+    for (const auto& [c, e] : ticket.events) {
+      const EvaluatedEvent& evaluated = verdict.clips[c].events[e];
+      if (only_new && evaluated.state != EventState::kNew) continue;
+      add(is_first ? "" : "  ", verdict.clips[c], evaluated);
+      is_first = false;
+    }
+  }
   std::string errors;
   for (const EvaluatedClip& clip : verdict.clips) {
     if (!clip.clip.error.empty()) {
       errors += clip.clip.error + (clip.clip.clip.empty() ? "" : "  (" + clip_text(clip) + ")") + "\n";
     }
     for (const EvaluatedEvent& evaluated : clip.events) {
-      const Event& event = evaluated.event;
-      if (event.kind == SC_CLASS_TOUCH) continue;
-      if (evaluated.state == EventState::kAccepted && !lists_accepted) continue;
-      const std::string worst = event.from == event.to || evaluated.state == EventState::kResolved
-                                    ? ""
-                                    : fmt::format("  (worst at {})", frame_text(event.deepest));
-      rows.push_back({clip_text(clip), frames_text(event), parts_text(event),
-                      fmt::format("{:.0f} mm{}{}", event.depth_mm, worst, marks(evaluated))});
-      for (std::size_t k = 0; k < 3; ++k) widths[k] = std::max(widths[k], rows.back()[k].size());
+      if (!only_new && !evaluated.is_open() && evaluated.event.kind != SC_CLASS_TOUCH) add("", clip, evaluated);
     }
   }
   std::string out;
@@ -96,7 +109,8 @@ std::string check_text(const Verdict& verdict, bool lists_accepted) {
     out += row[3] + "\n";
   }
   for (const std::string& note : verdict.notes) errors += "note: " + note + "\n";
-  return out + errors + (out.empty() && errors.empty() ? "" : "\n") + summary_text(verdict.summary);
+  return out + errors + (out.empty() && errors.empty() ? "" : "\n") +
+         summary_text(verdict.summary, verdict.tickets.size());
 }
 
 }  // namespace spherechain::baker

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -66,17 +67,23 @@ std::string fault_text(const EvaluatedEvent& evaluated) {
                      frame_text(event.deepest), worse.empty() ? worse : ", " + worse);
 }
 
-std::string testcase(const EvaluatedClip& clip) {
+// The tickets of failing events of clip `c`, the worst first, each with these events below it.
+std::string testcase(const Verdict& verdict, std::size_t c) {
+  const EvaluatedClip& clip = verdict.clips[c];
   std::string out = fmt::format("  <testcase classname=\"{}\" name=\"{}\"", xml(clip.character),
                                 xml(clip.clip.clip.empty() ? "character" : clip.clip.clip));
   if (!clip.clip.error.empty()) return out + fmt::format("><error message=\"{}\"/></testcase>\n", xml(clip.clip.error));
   if (clip.clip.clip.empty()) return out + "><skipped message=\"no clips\"/></testcase>\n";
   std::string lines;
   int failing = 0;
-  for (const EvaluatedEvent& evaluated : clip.events) {
-    if (!evaluated.fails) continue;
-    ++failing;
-    lines += fault_text(evaluated) + "\n";
+  for (const Ticket& ticket : verdict.tickets) {
+    std::string faults;
+    for (const auto& [ticket_clip, e] : ticket.events) {
+      if (ticket_clip != c || !clip.events[e].fails) continue;
+      ++failing;
+      faults += "  " + fault_text(clip.events[e]) + "\n";
+    }
+    if (!faults.empty()) lines += fmt::format("{} (ticket {})\n{}", ticket.title, ticket.id, faults);
   }
   if (failing == 0) return out + "/>\n";
   return out + fmt::format("><failure message=\"{} {}\" type=\"penetration\">{}</failure></testcase>\n", failing,
@@ -88,11 +95,10 @@ std::string testcase(const EvaluatedClip& clip) {
 std::string check_junit(const Verdict& verdict) {
   int failures = 0;
   std::string cases;
-  for (const EvaluatedClip& clip : verdict.clips) {
-    bool fails = false;
-    for (const EvaluatedEvent& evaluated : clip.events) fails = fails || evaluated.fails;
-    failures += fails ? 1 : 0;
-    cases += testcase(clip);
+  for (std::size_t c = 0; c < verdict.clips.size(); ++c) {
+    const std::vector<EvaluatedEvent>& events = verdict.clips[c].events;
+    failures += std::any_of(events.begin(), events.end(), [](const auto& e) { return e.fails; }) ? 1 : 0;
+    cases += testcase(verdict, c);
   }
   return fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n <testsuite name=\"spherechain check\" tests=\"{}\" "
@@ -132,6 +138,7 @@ std::string check_sarif(const Verdict& verdict) {
   }
   ordered_json rules = ordered_json::array();
   for (const auto& [id, text] : {std::pair("penetration", "A body part is in another."),
+                                 std::pair("inside", "Most of a body part is inside another."),
                                  std::pair("deep_fold", "A fold of the skin is very deep."),
                                  std::pair("unreadable", "A file cannot be checked.")}) {
     rules.push_back({{"id", id}, {"shortDescription", {{"text", text}}}});

@@ -7,8 +7,9 @@
 
 namespace spherechain::baker {
 
-// A verdict for people, as a linter prints it: all faults, or those that are not accepted.
-std::string check_text(const Verdict& verdict, bool lists_accepted);
+// A verdict for people, as a linter prints it: tickets, the worst first, each with its other events below it, then what
+// is in no ticket. Or new faults alone.
+std::string check_text(const Verdict& verdict, bool only_new);
 // "worse than 40 mm": a known event was no deeper; else empty.
 std::string worse_text(const EvaluatedEvent& evaluated);
 

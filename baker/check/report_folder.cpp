@@ -46,8 +46,9 @@ std::string strip(const EvaluatedClip& clip) {
 ordered_json page_event(const EvaluatedEvent& evaluated) {
   const Event& event = evaluated.event;
   ordered_json out = event_json(event);
-  for (const char* key : {"depth_percent", "direction", "volume_ml"}) out.erase(key);
+  for (const char* key : {"direction", "volume_ml"}) out.erase(key);
   out["depth_mm"] = std::round(1000 * event.depth_mm) / 1000;
+  out["depth_percent"] = std::round(100 * event.depth_percent) / 100;
   if (event.volume_ml >= 0) out["volume_ml"] = std::round(10 * event.volume_ml) / 10;
   out["text"] = parts_text(event);
   out["place"] = event.place;
@@ -70,6 +71,25 @@ std::size_t picture_of(const EvaluatedClip& clip) {
   return worst == nullptr ? 0 : static_cast<std::size_t>(worst->event.picture);
 }
 
+bool is_on_page(const EvaluatedEvent& evaluated) {
+  return is_fault(evaluated.event.kind) || evaluated.state == EventState::kResolved;
+}
+
+// A ticket as the page has it: its events by row and by place among the row's events. A picture shows its worst event.
+ordered_json page_ticket(const Ticket& ticket, const Verdict& verdict) {
+  ordered_json events = ordered_json::array();
+  for (const auto& [c, e] : ticket.events) {
+    const auto begin = verdict.clips[c].events.begin();
+    events.push_back({c, std::count_if(begin, begin + static_cast<std::ptrdiff_t>(e), is_on_page)});
+  }
+  const auto& [c, e] = ticket.events[0];
+  const int picture = verdict.clips[c].events[e].event.picture;
+  ordered_json out{{"id", ticket.id}, {"severity", std::round(100 * ticket.severity) / 100}, {"events", events}};
+  if (picture > 0)
+    out["picture"] = data_name(verdict.clips[c].clip.key) + picture_file(static_cast<std::size_t>(picture));
+  return out;
+}
+
 ordered_json page_clip(const EvaluatedClip& clip) {
   ordered_json out{{"character", clip.character}, {"clip", clip.clip.clip}};
   if (!clip.clip.error.empty()) out["error"] = clip.clip.error;
@@ -84,7 +104,7 @@ ordered_json page_clip(const EvaluatedClip& clip) {
   ordered_json& events = out["events"] = ordered_json::array();
   int minor = 0;
   for (const EvaluatedEvent& evaluated : clip.events) {
-    if (is_fault(evaluated.event.kind) || evaluated.state == EventState::kResolved) {
+    if (is_on_page(evaluated)) {
       events.push_back(page_event(evaluated));
     } else {
       ++minor;
@@ -156,6 +176,15 @@ bool write_report(const fs::path& folder, const Verdict& verdict, const Store& s
     fits[data_name(clip.clip.character_key)] = clip.fit;
     heat[clip.clip.character_key].add(store.take(clip.clip.key, kHeatFile), clip);
   }
+  ordered_json tickets = ordered_json::array();
+  for (const Ticket& ticket : verdict.tickets) {
+    tickets.push_back(page_ticket(ticket, verdict));
+    if (!tickets.back().contains("picture")) continue;
+    const auto& [c, e] = ticket.events[0];
+    const EvaluatedClip& clip = verdict.clips[c];
+    const auto picture = static_cast<std::size_t>(clip.events[e].event.picture);
+    if (picture != picture_of(clip)) take(clip.clip.key, picture_file(picture));
+  }
   for (const auto& [character, map] : heat) report.write(data_name(character) + "_heat.js", map.page());
   const Summary& s = verdict.summary;
   const ordered_json library{{"fails", verdict.fails},
@@ -167,6 +196,7 @@ bool write_report(const fs::path& folder, const Verdict& verdict, const Store& s
                              {"new", s.fresh},
                              {"errors", s.errors},
                              {"fits", fits},
+                             {"tickets", std::move(tickets)},
                              {"rows", std::move(clips)}};
   report.write("library.js", "spherechain.library = " + json_text(library, -1) + ";\n");
   bool has_pages = true;

@@ -44,7 +44,8 @@ std::string to_bytes(const CharacterResult& result) {
                     {"grade", result.grade},
                     {"fit", result.fit},
                     {"notes", result.notes},
-                    {"parts", result.parts}},
+                    {"parts", result.parts},
+                    {"limbs", result.limbs}},
                    -1);
 }
 
@@ -71,6 +72,7 @@ std::optional<CharacterResult> read_character_result(const std::string& bytes) {
     json.at("fit").get_to(out.fit);
     json.at("notes").get_to(out.notes);
     json.at("parts").get_to(out.parts);
+    json.at("limbs").get_to(out.limbs);
     return out;
   });
 }

@@ -29,6 +29,7 @@ struct CharacterResult {
   std::string fit;                 // the same as a sentence: fit_line's
   std::vector<std::string> notes;  // of its units, and its import's
   std::vector<std::string> parts;  // names of its body parts
+  std::vector<std::string> limbs;  // of each part the part that its limb begins with; empty: it is of the trunk
 };
 
 // As the bytes of a file, and back; no result where the bytes are not whole.

@@ -41,7 +41,10 @@ class ConfigReader {
 
   // `key`: "'max_depth_mm'", or "'allow', entry 2: 'depth_mm'".
   double depth(const json& value, const std::string& key) const {
-    if (!value.is_number() || value.get<double>() < 0) fail(key + " is not a depth in mm, 0 or more");
+    if (!value.is_number() || value.get<double>() < 0) {
+      const bool is_percent = key.find("percent") != std::string::npos;
+      fail(key + " is not a depth in " + (is_percent ? "percent of the height" : "mm") + ", 0 or more");
+    }
     return value.get<double>();
   }
 
@@ -58,13 +61,18 @@ class ConfigReader {
   Rules::Allowed allowed(const json& entry, const std::string& place) const {
     if (!entry.is_object()) fail(place + R"( is not {"parts": [one, other], "depth_mm": depth})");
     for (const auto& [key, value] : entry.items()) {
-      if (key != "parts" && key != "depth_mm")
-        fail(place + ": '" + key + "' is unknown (parts and depth_mm are known)");
+      if (key != "parts" && key != "depth_mm" && key != "depth_percent")
+        fail(place + ": '" + key + "' is unknown (parts, depth_mm and depth_percent are known)");
     }
-    const json parts = entry.value("parts", json()), depth_mm = entry.value("depth_mm", json());
+    const json parts = entry.value("parts", json());
     if (!parts.is_array() || parts.size() != 2) fail(place + ": 'parts' is not a list of two body parts");
     const std::string key = place + ": 'parts'";
-    return {{text(parts[0], key), text(parts[1], key)}, depth(depth_mm, place + ": 'depth_mm'")};
+    Rules::Allowed out{{text(parts[0], key), text(parts[1], key)}, {}};
+    const bool has_percent = entry.contains("depth_percent");
+    if (has_percent) out.depth.percent = depth(entry["depth_percent"], place + ": 'depth_percent'");
+    if (!has_percent || entry.contains("depth_mm"))
+      out.depth.mm = depth(entry.value("depth_mm", json()), place + ": 'depth_mm'");
+    return out;
   }
 
   // Pairs that intersect in every pose come from the character's design; no clip causes them.
@@ -74,7 +82,7 @@ class ConfigReader {
     const PartFilter filter = read_part_filter((folder / path.get<std::string>()).string());
     for (const FilteredPair& pair : filter.pairs) {
       if (pair.kind != PairKind::kAlways) continue;
-      out.push_back({{filter.parts[pair.parts[0]], filter.parts[pair.parts[1]]}, Rules::kAnyDepthMm});
+      out.push_back({{filter.parts[pair.parts[0]], filter.parts[pair.parts[1]]}, {Rules::kAnyDepthMm, 0}});
     }
   }
 
@@ -116,16 +124,20 @@ bool Rules::leaves_out(const std::array<std::string, 2>& parts) const {
                      [&](const std::string& part) { return part == parts[0] || part == parts[1]; });
 }
 
+std::string Rules::Depth::text() const {
+  if (mm >= kAnyDepthMm) return "any depth is allowed";
+  if (percent <= 0) return fmt::format("{:g} mm are allowed", mm);
+  const std::string also = mm > 0 ? fmt::format("{:g} mm or ", mm) : "";
+  return fmt::format("{}{:g} % of the height are allowed", also, percent);
+}
+
 std::string Rules::excuse(const Event& event) const {
   if (!is_fault(event.kind)) return {};
   for (const Allowed& one : allowed) {
-    if (concerns(one, event) && event.depth_mm <= one.depth_mm) {
-      if (one.depth_mm >= kAnyDepthMm)
-        return fmt::format("{} and {}: any depth is allowed", one.parts[0], one.parts[1]);
-      return fmt::format("{} and {}: {:g} mm are allowed", one.parts[0], one.parts[1], one.depth_mm);
-    }
+    if (concerns(one, event) && one.depth.covers(event))
+      return fmt::format("{} and {}: {}", one.parts[0], one.parts[1], one.depth.text());
   }
-  if (event.depth_mm <= max_depth_mm) return fmt::format("{:g} mm are allowed", max_depth_mm);
+  if (max_depth.covers(event)) return max_depth.text();
   if (severity(event.kind) == Severity::kIgnore)
     return fmt::format("{} is ignored", sc_penetration_class_name(event.kind));
   return {};
@@ -157,13 +169,17 @@ CheckConfig read_config(const std::string& text, const std::string& file, const 
     } else if (key == "leave_out") {
       reader.leave_out(value, config.rules.left_out);
     } else if (key == "max_depth_mm") {
-      config.rules.max_depth_mm = reader.depth(value, "'max_depth_mm'");
+      config.rules.max_depth.mm = reader.depth(value, "'max_depth_mm'");
+    } else if (key == "max_depth_percent") {
+      config.rules.max_depth.percent = reader.depth(value, "'max_depth_percent'");
     } else if (key == "severity") {
       reader.severity(value, config.rules);
     } else if (key == "bake") {
       config.bake = make_settings("balanced", value.dump(), reader.here() + ": 'bake'");
     } else {
-      reader.fail("'" + key + "' is unknown (allow, filter, leave_out, max_depth_mm, severity and bake are known)");
+      reader.fail(
+          "'" + key +
+          "' is unknown (allow, filter, leave_out, max_depth_mm, max_depth_percent, severity and bake are known)");
     }
   }
   return config;

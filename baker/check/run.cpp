@@ -12,6 +12,7 @@
 #include "baker/check/clip_queue.h"
 #include "baker/check/clip_worker.h"
 #include "baker/check/file_hash.h"
+#include "baker/check/tickets.h"
 #include "baker/import/notes.h"
 #include "baker/mesh/error.h"
 #include "baker/mesh/utf8.h"
@@ -68,6 +69,7 @@ void write_bake(const Store& store, const std::string& key, const fs::path& file
   for (const std::string& note : take_notes()) result.notes.push_back(without_file(note, file));
   if (const std::string note = unit_note(baked); !note.empty()) result.notes.push_back(note);
   for (const BodyPart& part : baked.body_parts.parts) result.parts.push_back(part.name);
+  result.limbs = limbs_of(baked.body_parts.parts);
   store.write(key, kAssetFile, {reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size()});
   store.write(key, kResultFile, to_bytes(result));
 }

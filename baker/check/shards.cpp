@@ -22,13 +22,15 @@ using nlohmann::ordered_json;
 
 ordered_json rules_json(const Rules& rules) {
   ordered_json allow = ordered_json::array();
-  for (const auto& [parts, depth] : rules.allowed) allow.push_back({{"parts", parts}, {"depth_mm", depth}});
+  for (const auto& [parts, depth] : rules.allowed)
+    allow.push_back({{"parts", parts}, {"depth_mm", depth.mm}, {"depth_percent", depth.percent}});
   const auto name = [](Severity severity) {
     return severity == Severity::kError ? "error" : severity == Severity::kWarning ? "warning" : "ignore";
   };
   return {{"allow", allow},
           {"leave_out", rules.left_out},
-          {"max_depth_mm", rules.max_depth_mm},
+          {"max_depth_mm", rules.max_depth.mm},
+          {"max_depth_percent", rules.max_depth.percent},
           {"severity", {{"penetration", name(rules.penetration)}, {"deep_fold", name(rules.deep_fold)}}}};
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include "baker/check/tickets.h"
+
 namespace spherechain::baker {
 namespace {
 
@@ -148,6 +150,7 @@ Verdict evaluate_clips(const std::vector<CheckedClip>& clips, const std::vector<
                 std::any_of(evaluated.events.begin(), evaluated.events.end(), [](const auto& e) { return e.fails; });
     out.clips.push_back(std::move(evaluated));
   }
+  out.tickets = find_tickets(out.clips, read);
   std::set<std::string> parts, unknown;
   for (const auto& [key, character] : read) parts.insert(character.parts.begin(), character.parts.end());
   for (const CharacterRules& of : characters) {

@@ -46,8 +46,21 @@ struct Summary {
   std::map<PenetrationClass, int> besides;  // events of classes that are counted only
 };
 
+// One cause to mend, and the open events that it shows in.
+struct Ticket {
+  struct Shown {
+    std::size_t clip, event;  // clips[clip].events[event] of the verdict
+  };
+  std::string id;                            // the same in later runs, until other parts meet
+  std::string title;                         // "hero walk: left hand in hips"
+  double severity = 0;                       // of its worst event, see tickets.h
+  EventState state = EventState::kAccepted;  // new where one of its events is, else known where one is
+  std::vector<Shown> events;                 // the worst first
+};
+
 struct Verdict {
   std::vector<EvaluatedClip> clips;
+  std::vector<Ticket> tickets;  // the worst first
   Summary summary;
   std::vector<std::string> notes;  // possible mistakes: units, rules for unknown parts
   bool fails = false;              // an event fails, or a file cannot be checked

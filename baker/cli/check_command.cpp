@@ -148,7 +148,7 @@ Verdict report(const CheckOptions& options, const std::vector<CheckedClip>& clip
   if (!options.junit.empty()) write_atomically(options.junit, check_junit(verdict));
   if (!options.sarif.empty()) write_atomically(options.sarif, check_sarif(verdict));
   if (options.accept) write_atomically(options.baseline, to_bytes(baseline));
-  say("{}", check_text(verdict, fail_on != FailOn::kNew));
+  say("{}", check_text(verdict, fail_on == FailOn::kNew));
   if (has_pages) {
     say("wrote {}: open it in a browser\n", (fs::path(options.output) / "index.html").string());
   } else {
@@ -174,7 +174,7 @@ ExitCode run_check(const CheckOptions& options) {
   CheckConfig config = default_config();
   if (!options.config.empty()) config = read_config(read_file(options.config), options.config, config);
   if (!options.character.empty()) config.bake.import.character = options.character;
-  config.rules.max_depth_mm = std::max(config.rules.max_depth_mm, options.max_depth);
+  config.rules.max_depth.mm = std::max(config.rules.max_depth.mm, options.max_depth);
   Baseline baseline;
   if (!options.baseline.empty()) baseline = read_baseline(options.baseline, options.accept);
   std::vector<CommandFile> inputs{{"--config", options.config}, {"--motion", options.motion}};

@@ -48,8 +48,25 @@ const boxing = () => json.clips.find(({ clip }) => clip === 'Boxing_Toes.bvh');
 const clipReady = () => page.waitForFunction(() => window.spherechainViewer?.ready);
 const chosen = () => page.locator('.event[aria-pressed=true]').innerText();
 
-test('the library is a table that sorts and filters', async () => {
+test('the library is a list of tickets, the worst first, each with its other events below it', async () => {
   await open();
+  const tickets = json.tickets;
+  assert.ok(tickets.length > 1 && tickets.some(({ events }) => events.length > 1));
+  assert.equal(await page.locator('#rows tr:not(.below)').count(), tickets.length);
+  assert.ok((await rows())[0].includes(tickets[0].parts.join(' in ')));
+  await page.waitForFunction(() => document.querySelector('#rows img').naturalWidth > 0);
+  const first = tickets.findIndex(({ events }) => events.length > 1);
+  assert.equal(await page.locator('.below:visible').count(), 0);
+  await page.locator('.more').first().click();
+  assert.equal(await page.locator('.below:visible').count(), tickets[first].events.length - 1);
+  await page.locator('#rows tr a').nth(1).click();
+  await clipReady();
+  assert.equal(await page.evaluate(() => spherechainViewer.frame), tickets[0].worst.frame);
+});
+
+test('by clips it is a table that sorts and filters', async () => {
+  await open();
+  await page.getByRole('link', { name: 'Clips' }).click();
   assert.match((await rows())[0], /Boxing_Toes\.bvh/); // the deepest first
   await page.getByRole('button', { name: 'Clip', exact: true }).click();
   assert.match((await rows())[0], /01_03\.bvh/);
@@ -66,7 +83,7 @@ test('the library is a table that sorts and filters', async () => {
 });
 
 test('a click opens a clip at its worst event, in 3D', async () => {
-  await open();
+  await open(`${url('index.html')}#clips`);
   await page.getByRole('link', { name: 'Boxing_Toes.bvh' }).click();
   await clipReady();
   const list = faults(boxing());
@@ -148,7 +165,7 @@ test('a thousand clips open within two seconds', async () => {
   const html = readFileSync(join(folder, 'index.html'), 'utf8').replace('src="library.js"', 'src="data/many/library.js"');
   writeFileSync(join(folder, 'many.html'), html);
   const start = performance.now();
-  await open(url('many.html'));
+  await open(`${url('many.html')}#clips`);
   await page.locator('#rows img').first().waitFor();
   const seconds = (performance.now() - start) / 1000;
   const end = performance.now() + 20000;

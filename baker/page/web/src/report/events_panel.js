@@ -1,11 +1,9 @@
 import { h } from '../base/dom.js';
-import { insideText } from '../model/contacts.js';
+import { insideText, millimetres } from '../model/contacts.js';
 import { clipLink, readLink } from './links.js';
-import { isAccepted, isFault, onMarks, toggleAccepted } from './marks.js';
+import { isAccepted, isFault, onMarks, percent, toggleAccepted } from './marks.js';
 
 // The clip's events. One is chosen: the page is at its deepest frame, and the camera where it is seen.
-
-const millimetres = (mm) => `${mm < 9.95 ? mm.toFixed(1) : Math.round(mm)} mm`;
 
 const timecode = (frame, fps) => {
   const seconds = Math.floor(frame / fps);
@@ -66,7 +64,7 @@ export function fillEvents(panel, { rows, row, fit, model, store, flyToContact }
         'button',
         { type: 'button', class: 'pair event', 'aria-pressed': `${index === chosen}`, disabled: gone, onclick: () => go(index) },
         h('span', { class: 'part-names' }, event.text),
-        h('span', { class: 'count' }, millimetres(event.depth_mm)),
+        h('span', { class: 'count' }, `${millimetres(event.depth_mm)}${event.depth_percent === undefined ? '' : `, ${percent(event.depth_percent)}`}`),
         h('span', { class: 'when' }, `${frames}${event.from === event.to ? '' : `, worst at ${event.deepest}`} (${timecode(event.deepest, row.fps)})`),
         h('span', { class: `when ${event.fails && !isAccepted(row, event) ? 'warning' : ''}` }, `${classText(event)}, ${state(event)}${event.volume_ml === undefined ? '' : `, ${event.volume_ml} ml`}`),
       ),

@@ -1,3 +1,5 @@
+import { insideText } from '../model/contacts.js';
+
 // Events that a person has accepted in this browser, until they are exported. A key is an event's: where, which parts, when.
 
 const STORE = 'spherechain-accepted';
@@ -31,6 +33,9 @@ export const onMarks = (listener) =>
     marks = read();
     listener();
   });
+
+export const percent = (share) => `${share.toFixed(1)} %`;
+export const kindText = (event) => (event.class === 'inside' ? `${insideText(event)}, ` : event.class === 'deep_fold' ? 'deep fold, ' : '');
 
 const FAULTS = ['deep_fold', 'penetration', 'inside']; // the worst last
 export const rankOf = (event) => FAULTS.indexOf(event.class);
