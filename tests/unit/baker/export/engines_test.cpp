@@ -9,7 +9,7 @@
 #include "baker/export/formats.h"
 #include "baker/mesh/error.h"
 
-namespace spherechain::test {
+namespace spherechain::engines_test {
 namespace {
 
 using namespace baker;
@@ -107,4 +107,4 @@ TEST_CASE("exports: USD names are identifiers, each once, and its up is the file
   CHECK(count(text, "upAxis = \"Z\"") == 1);
 }
 
-}  // namespace spherechain::test
+}  // namespace spherechain::engines_test

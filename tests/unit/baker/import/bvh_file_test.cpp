@@ -33,7 +33,7 @@ std::string with(std::string text, const std::string& from, const std::string& t
   return text;
 }
 
-std::string refusal_of(const std::string& text) {
+std::string bvh_refusal(const std::string& text) {
   try {
     parse_bvh(text, "a.bvh");
   } catch (const Error& error) {
@@ -200,7 +200,7 @@ TEST_CASE("what is wrong with a recording is reported by line, joint and frame")
       {"\xFF\xFEH", "is UTF-16 text (save it as UTF-8)"},
       {"ply\n", "line 1: is no BVH recording"}};
   for (const auto& [text, part] : cases) {
-    const std::string came = refusal_of(text);
+    const std::string came = bvh_refusal(text);
     CHECK_MESSAGE(came.find("a.bvh: " + part) == 0, came);
   }
 }

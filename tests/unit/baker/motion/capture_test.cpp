@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kOneDegree = std::numbers::pi / 180;
 
 // A joint of a body in a T-pose, in metres: left, up, forward.
 struct Part {
@@ -93,7 +93,7 @@ struct Style {
 };
 
 // Angles about z, x and y, in that order: R = Rz Rx Ry.
-Vec3 zxy(const Eigen::Matrix3d& r) { return r.eulerAngles(2, 0, 1) / kDegree; }
+Vec3 zxy(const Eigen::Matrix3d& r) { return r.eulerAngles(2, 0, 1) / kOneDegree; }
 
 std::string bvh(const std::vector<Frame>& frames, const Style& style = {}, double frame_time = 0.5) {
   std::ostringstream out;
@@ -126,7 +126,7 @@ std::string bvh(const std::vector<Frame>& frames, const Style& style = {}, doubl
     for (const std::size_t p : order) {
       Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
       if (const auto found = frame.turns.find(parts()[p].name); found != frame.turns.end()) {
-        turn = Eigen::AngleAxisd(found->second.degrees * kDegree, Vec3::Unit(found->second.axis)).toRotationMatrix();
+        turn = Eigen::AngleAxisd(found->second.degrees * kOneDegree, Vec3::Unit(found->second.axis)).toRotationMatrix();
       }
       Eigen::Matrix3d local = style.rest * turn * style.rest.transpose();
       if (p == 0) {
@@ -176,7 +176,7 @@ double farthest(const std::vector<Affine>& a, const std::vector<Affine>& b) {
   return most / h.frame.height;
 }
 
-double degrees_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)) / kDegree; }
+double degrees_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)) / kOneDegree; }
 
 constexpr double kSingles = 1e-3;  // degrees: what a file's numbers are read as
 
@@ -237,7 +237,7 @@ TEST_CASE("a joint that turns in a capture turns ours by the same angle about th
       CAPTURE(theirs);
       const std::vector<Frame> frames{{{0, 1, 0}, {}}, {{0, 1, 0}, {{theirs, {axis, 40}}}}};
       const std::vector<Affine> turned = posed(frames, 1);
-      const Eigen::Matrix3d expected = Eigen::AngleAxisd(40 * kDegree, Vec3::Unit(axis)).toRotationMatrix();
+      const Eigen::Matrix3d expected = Eigen::AngleAxisd(40 * kOneDegree, Vec3::Unit(axis)).toRotationMatrix();
       CHECK(turn_between(rest, turned, role).isApprox(expected, 1e-5));
       const char* other = role[0] == 'l' ? "right_elbow" : "left_knee";
       if (is_limb) CHECK(turn_between(rest, turned, other).isIdentity(1e-5));
