@@ -352,6 +352,10 @@ test('several clips: a list, a header that follows, frames of the clip, playing 
   await page.locator('#one-clip').click();
   assert.equal(await page.locator('#frame').getAttribute('max'), '14');
   silent(opened);
+  const link = (words) => page.evaluate((hash) => ((location.hash = hash), new Promise((done) => setTimeout(() => done(spherechainViewer.frame)))), words);
+  assert.equal(await link(new URLSearchParams({ clip: 'MyArmature|Run', frame: '3' }).toString()), 18);
+  assert.equal(await link('frame=7'), 7);
+  assert.equal(await link('clip=none&frame=3'), 7);
 });
 
 test('morph targets move the skin', async () => {
