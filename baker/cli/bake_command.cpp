@@ -21,6 +21,7 @@ ExitCode run_bake(const BakeOptions& options) {
   if (!options.body.empty()) settings.segment.body = parse_body(options.body);
   if (options.attachments) settings.import.attachments = true;
   if (!options.character.empty()) settings.import.character = options.character;
+  if (options.size.is_given()) settings.size = options.size;
   if (!options.roles.empty()) settings.roles = parse_role_file(read_file(options.roles), options.roles);
   if (!options.edits.empty()) {
     settings.edits = parse_edits(read_file(options.edits), options.edits);

@@ -53,6 +53,9 @@ void check_usage(const CheckOptions& options) {
   if (!options.fix.empty() && (options.merge || !options.shard.empty())) {
     throw Error(ExitCode::kUsage, "--fix: mends what it has checked itself, no shards (run fix for each character)");
   }
+  if (options.merge && options.size.is_given()) {
+    throw Error(ExitCode::kUsage, "--merge: takes sizes from the shards (give --scale and --height to these)");
+  }
   if (options.merge && (!options.config.empty() || !options.motion.empty() || !options.cache.empty())) {
     throw Error(ExitCode::kUsage,
                 "--merge: takes rules, motions and results from the shards (give --config, --motion "
@@ -174,6 +177,7 @@ ExitCode run_check(const CheckOptions& options) {
   CheckConfig config = default_config();
   if (!options.config.empty()) config = read_config(read_file(options.config), options.config, config);
   if (!options.character.empty()) config.bake.import.character = options.character;
+  if (options.size.is_given()) config.bake.size = options.size;
   config.rules.max_depth.mm = std::max(config.rules.max_depth.mm, options.max_depth);
   Baseline baseline;
   if (!options.baseline.empty()) baseline = read_baseline(options.baseline, options.accept);

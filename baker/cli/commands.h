@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "baker/import/size.h"
 #include "baker/mesh/error.h"
 #include "baker/play/play.h"
 
@@ -13,6 +14,7 @@ namespace spherechain::baker {
 
 struct BakeOptions {
   std::string input, output, config, report, preview, roles, body, edits, character;
+  GivenSize size;
   std::string profile = "balanced";
   int spheres = 0;  // 0: no limit
   bool extremities = false, attachments = false, prop = false, force = false;
@@ -66,6 +68,7 @@ ExitCode run_view(const ViewOptions& options);
 struct CheckOptions {
   std::vector<std::string> library;  // with `merge` folders of shards
   std::string output, config, baseline, motion, shard, cache, json, junit, sarif, fix, character;
+  GivenSize size;
   std::string fail_on = "penetration";
   double max_depth = 0, fps = 0;  // 0: each clip's own
   int jobs = 0;                   // 0: as many as the machine has cores
@@ -75,6 +78,7 @@ ExitCode run_check(const CheckOptions& options);
 
 struct FixOptions {
   std::string input, output, clip, motion, keep, baseline, report, character;
+  GivenSize size;
   std::vector<std::string> parts;
   double budget = 25, margin = 1.5;  // degrees; mm
   bool force = false;
@@ -83,6 +87,7 @@ ExitCode run_fix(const FixOptions& options);
 
 struct ExportOptions {
   std::string asset, source, format, output, filter, volumes;  // empty volumes: what the format holds best
+  GivenSize size;                                              // the asset's in place of a file's
   int at_most = 0;                                             // 0: as many as pay
   bool force = false;
 };

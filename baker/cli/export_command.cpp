@@ -52,10 +52,13 @@ const ExportFormat& format_of(const std::string& name) {
                        [&](const ExportFormat& format) { return format.name == name; });
 }
 
+BakeSettings settings_of(const OpenAsset& asset, const std::string& file) {
+  return make_settings("balanced", asset->info().settings, file);
+}
+
 SourceGlb read_source_glb(const OpenAsset& asset, const ExportOptions& options) {
   // Read as for the bake: other options bind other bones.
-  const SourceMesh source =
-      read_source(options.source, make_settings("balanced", asset->info().settings, options.asset).import);
+  const SourceMesh source = read_source(options.source, settings_of(asset, options.asset).import);
   SourceGlb out{read_as_glb(options.source), {}};
   const std::size_t bones = asset->info().bone_count;
   for (std::size_t i = 0; i < bones; ++i) {
@@ -141,11 +144,16 @@ ExitCode run_export(const ExportOptions& options) {
   }
   check_ending(format, options.output);
   // Errors in the files are reported before the fit, which takes seconds.
-  const OpenAsset asset = open_asset(options.asset);
+  const auto open = [&] {
+    OpenAsset out = open_asset(options.asset);
+    out.resize(options.size);
+    return out;
+  };
+  const OpenAsset asset = open();
   std::optional<PartFilter> filter;
   if (!options.filter.empty()) filter = read_part_filter(options.filter, asset);
   std::optional<AnimatedAsset> animated;
-  if (!options.source.empty()) animated.emplace(options.asset, options.source, MotionChoice(), FrameChoice());
+  if (!options.source.empty()) animated.emplace(open(), options.asset, options.source, MotionChoice(), FrameChoice());
   SourceGlb source;
   if (format.of_source != nullptr) source = read_source_glb(asset, options);
   const std::string shape = options.volumes.empty() ? format.volumes : options.volumes;
@@ -172,10 +180,12 @@ ExitCode run_export(const ExportOptions& options) {
     say("on its clips: {}\n", fit_text(moving));
     say_what_leaves(colliders, moving);
   }
-  std::vector<std::string> parts;
-  for (const ColliderBody& body : colliders.bodies) parts.push_back(body.name);
-  if (const std::string note = unit_note(colliders.height, parts); !note.empty()) {
-    say("note: the character {}\n", note);
+  if (!options.size.is_given() && !settings_of(asset, options.asset).size.is_given()) {
+    std::vector<std::string> parts;
+    for (const ColliderBody& body : colliders.bodies) parts.push_back(body.name);
+    if (const std::string note = unit_note(colliders.height, parts); !note.empty()) {
+      say("note: {}: {}\n", colliders.source_file, note);
+    }
   }
   for (const std::string& note : made.notes) say("note: {}\n", note);
   for (const OutputFile& file : outputs) say("wrote {}\n", file.path);

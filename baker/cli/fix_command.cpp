@@ -123,6 +123,7 @@ ExitCode run_fix(const FixOptions& options) {
   job.config = default_config();
   if (!options.keep.empty()) job.config = read_config(read_file(options.keep), options.keep, job.config);
   if (!options.character.empty()) job.config.bake.import.character = options.character;
+  if (options.size.is_given()) job.config.bake.size = options.size;
   if (!options.baseline.empty()) job.baseline = read_baseline(options.baseline, false);
   job.parts = options.parts;
   job.mend = {options.budget, options.margin};

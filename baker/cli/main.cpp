@@ -83,6 +83,16 @@ void add_character(CLI::App& command, std::string& character) {
            "Of several characters in a file the one to take: the name of its node, or of its skin");
 }
 
+void add_size(CLI::App& command, GivenSize& size) {
+  const auto add = [&](const char* option, std::optional<double>& number, const char* description) {
+    return command.add_option(option, number, description)
+        ->check(CLI::Range(kSizeFactorMin, kSizeFactorMax))
+        ->check(refuse_nan);
+  };
+  CLI::Option* scale = add("--scale", size.scale, "The character is so many times as large as its file says");
+  add("--height", size.height, "Metres that the character is tall, or long where it is no biped")->excludes(scale);
+}
+
 void add_with(CLI::App& command, WithOptions& with) {
   CLI::Option_group& second = *command.add_option_group("Second character", "Shown beside the first");
   CLI::Option* const asset = add_name(second, "--with", with.asset, "Its asset (.sphc)");
@@ -156,6 +166,7 @@ int main(int argc, char** argv) {
                          "Spheres in head, hands and feet too (profile balanced has them)");
   bake_command->add_flag("--attachments", bake.attachments, "Keep rigid meshes that hang on joints: weapons, hats");
   add_character(*bake_command, bake.character);
+  add_size(*bake_command, bake.size);
   CLI::Option* prop = bake_command->add_flag("--prop", bake.prop, "A rigid thing without a rig: a sword, a chair");
   for (const char* other : {"--profile", "--roles", "--body", "--extremities", "--attachments", "--edits"}) {
     prop->excludes(bake_command->get_option(other));
@@ -214,6 +225,7 @@ int main(int argc, char** argv) {
            "Recording (BVH, FBX, Collada, glTF) to carry over and mend, in place of the character's own clips")
       ->excludes(clip);
   add_character(*fix_command, fix.character);
+  add_size(*fix_command, fix.size);
   add_name(*fix_command, "--keep", fix.keep, "Rules, as check --config has them: what is fine as it is");
   add_name(*fix_command, "--baseline", fix.baseline, "What check --accept wrote: faults that are accepted are left");
   fix_command->add_option("--parts", fix.parts, "Body parts, with commas between: only faults of these are mended")
@@ -245,6 +257,7 @@ int main(int argc, char** argv) {
   add_volumes(*export_command, exported.volumes, exported.at_most,
               "Their shape (default: the best that the format holds)");
   add_name(*export_command, "--filter", exported.filter, "What filter wrote: pairs that need no test are ignored");
+  add_size(*export_command, exported.size);
   export_command->add_flag("--force", exported.force, "Replace an output file of another kind");
   export_command->callback([&] { run = [&] { return run_export(exported); }; });
 
@@ -302,6 +315,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1e-3, 1e6))
       ->check(refuse_nan);
   add_character(*check_command, check.character);
+  add_size(*check_command, check.size);
   add_continuous(*check_command, check.continuous);
   check_command->add_option("--jobs", check.jobs, "Processes at a time (default: one for each core)")
       ->check(CLI::Range(1, 1024));

@@ -366,6 +366,8 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings, cons
     out.binding = std::move(fitted.binding);
     out.quality = std::move(fitted.quality);
   });
+  out.character.metres_per_unit =
+      settings.size.metres_per_unit(out.character.metres_per_unit, out.regions.frame.height);
   if (out.closing.seconds > 0) {
     out.times.back().seconds -= out.closing.seconds;
     out.times.insert(out.times.end() - 1, {"wrap", out.closing.seconds});

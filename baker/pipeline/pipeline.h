@@ -19,6 +19,7 @@
 #include "baker/edits/edits.h"
 #include "baker/fit/fit.h"
 #include "baker/import/import.h"
+#include "baker/import/size.h"
 #include "baker/mesh/attempt.h"
 #include "baker/rig/rig.h"
 #include "baker/roles/roles.h"
@@ -37,6 +38,7 @@ inline constexpr int kSpheresMin = 8, kSpheresMax = 500, kPropSpheres = 32;
 
 struct BakeSettings {
   ImportOptions import;
+  GivenSize size;
   RoleFile roles;
   SegmentSettings segment;
   FitSettings fit;
@@ -59,7 +61,8 @@ void check_edits(const BakeSettings& settings, const std::string& what);
 // "biped" or "quadruped"; "auto" is unknown: found.
 BodyKind parse_body(const std::string& name);
 
-// The settings as canonical JSON: all keys, sorted, no spaces. `prop` and `edits` only where there are such.
+// The settings as canonical JSON: all keys, sorted, no spaces. `prop`, `scale`, `height` and `edits` only where
+// there are such.
 std::string to_json(const BakeSettings& settings);
 
 struct StageTime {

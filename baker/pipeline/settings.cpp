@@ -29,6 +29,11 @@ class Reader {
     value = v.get<double>();
   }
 
+  void number(const char* key, std::optional<double>& value, double low, double high) {
+    if (!object_.contains(key)) return;
+    number(key, value.emplace(), low, high);
+  }
+
   void integer(const char* key, int& value, int low, int high) {
     if (!take(key)) return;
     const json& v = object_[key];
@@ -135,6 +140,9 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   reader.boolean("attachments", settings.import.attachments);
   reader.boolean("prop", settings.import.prop);
   reader.word("character", settings.import.character);
+  reader.number("scale", settings.size.scale, kSizeFactorMin, kSizeFactorMax);
+  reader.number("height", settings.size.height, kSizeFactorMin, kSizeFactorMax);
+  if (settings.size.scale && settings.size.height) reader.fail("scale", "does not go with 'height'");
   if (profile == "prop") settings.import.prop = true;
   if (settings.import.prop) {
     settings.fit.few = true;
@@ -200,6 +208,8 @@ std::string to_json(const BakeSettings& settings) {
   out["attachments"] = settings.import.attachments;
   if (settings.import.prop) out["prop"] = true;
   if (!settings.import.character.empty()) out["character"] = settings.import.character;
+  if (settings.size.scale) out["scale"] = *settings.size.scale;
+  if (settings.size.height) out["height"] = *settings.size.height;
   if (!settings.edits.empty()) out["edits"] = json::parse(to_json(settings.edits));
   out["roles"] = settings.roles.role_of;
   out["rays"] = settings.fit.rays;

@@ -36,12 +36,17 @@ OpenAsset::OpenAsset(std::string_view bytes, const std::string& name)
     throw Error(ExitCode::kFile,
                 name + ": " + code_text(model_.status()) + ": " + model_.message() + " (bake it again)");
   }
+  metres_per_unit_ = double{view().info().metres_per_unit};
   if (has_skin(view())) check_runtime(read_skin_table(view(), skin_table(), surface_));
   std::size_t first = 0;
   for (const RestSphere& sphere : view().spheres()) {
     first_triangles_.push_back(first);
     first += sphere.triangle_count;
   }
+}
+
+void OpenAsset::resize(const GivenSize& size) {
+  metres_per_unit_ = size.metres_per_unit(metres_per_unit_, double{view().info().height});
 }
 
 Span<const std::uint32_t> OpenAsset::triangles_of(std::size_t sphere) const {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "baker/import/size.h"
 #include "runtime/src/asset/asset_view.h"
 #include "runtime/src/bodies/model.h"
 #include "runtime/src/skin/skin_table.h"
@@ -31,6 +32,11 @@ class OpenAsset {
   const AssetView* operator->() const { return &view(); }
   const AssetView& view() const { return view_of(model_.asset()); }
 
+  // Metres in one of the source's units, as the asset says or by resize().
+  double metres_per_unit() const { return metres_per_unit_; }
+  // The runtime keeps the asset's own size.
+  void resize(const GivenSize& size);
+
   const std::uint64_t* skin_table() const { return model_.handle()->skin_table; }
   const Surface& surface() const { return surface_; }
   // A sphere's source triangles.
@@ -39,6 +45,7 @@ class OpenAsset {
  private:
   Model model_;
   Surface surface_;
+  double metres_per_unit_ = 1;
   std::vector<std::size_t> first_triangles_;
 };
 OpenAsset open_asset(const std::string& path);

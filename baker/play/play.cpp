@@ -221,7 +221,7 @@ std::vector<Joint> joints_of(const OpenAsset& asset) {
   return joints;
 }
 
-double mm_per_unit(const OpenAsset& asset) { return 1000 * double{asset->info().metres_per_unit}; }
+double mm_per_unit(const OpenAsset& asset) { return 1000 * asset.metres_per_unit(); }
 
 std::vector<VertexWeights> weights_of(const OpenAsset& asset, const Character& character) {
   const Surface& surface = asset.surface();

@@ -43,7 +43,7 @@ Colliders find_bodies(const OpenAsset& asset) {
   const AssetInfo info = asset->info();
   Colliders out;
   out.source_file = info.source_file;
-  out.metres_per_unit = double{info.metres_per_unit};
+  out.metres_per_unit = asset.metres_per_unit();
   out.height = double{info.height} * out.metres_per_unit;
   out.left = vec3_of(info.left).normalized();
   out.up = (vec3_of(info.up) - vec3_of(info.up).dot(out.left) * out.left).normalized();
@@ -91,7 +91,7 @@ std::vector<Vec3> skin_positions(const OpenAsset& asset) {
   std::vector<Vec3> out;
   for (std::size_t v = 0; v < surface.rest_positions.size / 3; ++v) {
     const float* p = surface.rest_positions.data + 3 * v;
-    out.push_back(double{asset->info().metres_per_unit} * Vec3(double{p[0]}, double{p[1]}, double{p[2]}));
+    out.push_back(asset.metres_per_unit() * Vec3(double{p[0]}, double{p[1]}, double{p[2]}));
   }
   return out;
 }
@@ -100,7 +100,7 @@ std::vector<Vec3> skin_positions(const OpenAsset& asset, const std::vector<Vec3>
   const Surface& surface = asset.surface();
   std::vector<Vec3> out;
   for (const std::uint32_t v : surface.source_vertices) {
-    out.push_back(double{asset->info().metres_per_unit} * source[v]);
+    out.push_back(asset.metres_per_unit() * source[v]);
   }
   return out;
 }
