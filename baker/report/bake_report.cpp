@@ -323,17 +323,24 @@ bool is_tall(const Bake& bake) {
 }
 
 std::string unit_note(double metres, const std::vector<std::string>& parts) {
-  constexpr double kSmallest = 0.02, kLargest = 50, kLargestPerson = 10;
+  constexpr double kSmallest = 0.02, kLargest = 50, kSmallestBiped = 0.5, kLargestBiped = 3, kHuman = 1.7;
   const auto has = [&](const char* part) { return std::find(parts.begin(), parts.end(), part) != parts.end(); };
   const bool is_person = has("left hand") && has("right hand") && has("left thigh") && has("right thigh");
-  if (metres >= kSmallest && metres <= (is_person ? kLargestPerson : kLargest)) return {};
+  if (is_person && (metres < kSmallestBiped || metres > kLargestBiped)) {
+    return fmt::format(
+        "this biped is {:.4g} m tall: --height {} (or --scale {:.3g}) gives it a human's size, and limits in mm their "
+        "meaning (--scale 1 says that its size is right)",
+        metres, kHuman, kHuman / metres);
+  }
+  if (metres >= kSmallest && metres <= kLargest) return {};
   return fmt::format(
-      "measures {:.4g} m: its file names no unit, or a wrong one (export it in metres); until then depths in % of the "
-      "height are right, those in mm, volumes and masses are not",
+      "measures {:.4g} m: its file names no unit, or a wrong one (give --height); until then depths in % of the height "
+      "are right, those in mm, volumes and masses are not",
       metres);
 }
 
 std::string unit_note(const Bake& bake) {
+  if (bake.settings.size.is_given()) return {};
   std::vector<std::string> parts;
   for (const BodyPart& part : bake.body_parts.parts) parts.push_back(part.name);
   return unit_note(bake.regions.frame.height * bake.character.metres_per_unit, parts);
@@ -346,7 +353,8 @@ std::string bake_report_text(const Bake& bake) {
   std::string out = fmt::format("{}: {} triangles ({}), {} components, {:.3f} m {}; {}\n", bake.character.file,
                                 bake.character.source_triangles.size(), what, bake.character.report.components, metres,
                                 is_tall(bake) ? "tall" : "long", bake.regions.facing);
-  if (const std::string note = unit_note(bake); !note.empty()) out += "note: it " + note + "\n";
+  if (const std::string note = unit_note(bake); !note.empty())
+    out += "note: " + bake.character.file + ": " + note + "\n";
   if (const std::size_t dropped = bake.character.report.attachments_dropped; dropped > 0) {
     out += fmt::format("left out: {} on joints, such as weapons and hats (--attachments keeps them)\n",
                        dropped == 1 ? "1 rigid mesh" : fmt::format("{} rigid meshes", dropped));

@@ -20,8 +20,9 @@ std::string bake_report_text(const Bake& bake);
 // The last line of a bake: the grade of the fit, the parts that it fits badly, and those by the generic fit.
 std::string fit_line(const Bake& bake);
 
-// A note on the file's unit if no such body has this length; else empty. `parts` are the names of its body parts: a
-// dragon may be longer than a person, and toys are small.
+// A note with the remedy if hardly any such body has this length; else empty. A body with hands and thighs is a biped,
+// from 0.5 to 3 m tall; others may be dragons, and toys are small. `parts` are the names of its body parts. A bake
+// whose size the user gave has no note.
 std::string unit_note(double metres, const std::vector<std::string>& parts);
 std::string unit_note(const Bake& bake);
 

@@ -185,13 +185,16 @@ TEST_CASE("a rig whose joints are bound at one place, all or most of them, has r
   }
 }
 
-TEST_CASE("a size that no such body has is reported, and that of a toy, a giant or a dragon is not") {
+TEST_CASE("a biped under 0.5 m or over 3 m is reported with the remedy, a dragon or a toy without hands is not") {
   const std::vector<std::string> person{"head", "left hand", "right hand", "left thigh", "right thigh"},
       dragon{"head", "left wing", "right wing", "tail"};
-  for (const double metres : {17.6, 176.0, 0.0176, 0.00176}) {
-    CHECK(unit_note(metres, person).find(fmt::format("measures {:.4g} m", metres)) == 0);
+  for (const double metres : {17.6, 3.1, 0.45, 0.0176, 0.00176}) {
+    const std::string expected =
+        fmt::format("this biped is {:.4g} m tall: --height 1.7 (or --scale {:.3g})", metres, 1.7 / metres);
+    CHECK(unit_note(metres, person).find(expected) == 0);
   }
-  for (const double metres : {0.05, 0.3, 1.76, 8.0}) CHECK(unit_note(metres, person).empty());
+  for (const double metres : {0.55, 1.76, 2.9}) CHECK(unit_note(metres, person).empty());
   CHECK(unit_note(17.6, dragon).empty());
-  CHECK(!unit_note(170, dragon).empty());
+  CHECK(unit_note(0.3, dragon).empty());
+  CHECK(unit_note(170, dragon).find("measures 170 m") == 0);
 }
