@@ -75,19 +75,26 @@ bool is_on_page(const EvaluatedEvent& evaluated) {
   return is_fault(evaluated.event.kind) || evaluated.state == EventState::kResolved;
 }
 
-// A ticket as the page has it: its events by row and by place among the row's events. A picture shows its worst event.
+// The ticket's worst event that has a picture: each two parts have one of their deepest.
+Ticket::Shown pictured(const Ticket& ticket, const Verdict& verdict) {
+  return *std::find_if(ticket.events.begin(), ticket.events.end() - 1, [&](const Ticket::Shown& shown) {
+    return verdict.clips[shown.clip].events[shown.event].event.picture > 0;
+  });
+}
+
+// A ticket as the page has it: its events by row and by place among the row's events.
 ordered_json page_ticket(const Ticket& ticket, const Verdict& verdict) {
   ordered_json events = ordered_json::array();
   for (const auto& [c, e] : ticket.events) {
     const auto begin = verdict.clips[c].events.begin();
     events.push_back({c, std::count_if(begin, begin + static_cast<std::ptrdiff_t>(e), is_on_page)});
   }
-  const auto& [c, e] = ticket.events[0];
-  const int picture = verdict.clips[c].events[e].event.picture;
-  ordered_json out{{"id", ticket.id}, {"severity", std::round(100 * ticket.severity) / 100}, {"events", events}};
-  if (picture > 0)
-    out["picture"] = data_name(verdict.clips[c].clip.key) + picture_file(static_cast<std::size_t>(picture));
-  return out;
+  const auto [c, e] = pictured(ticket, verdict);
+  const auto picture = static_cast<std::size_t>(verdict.clips[c].events[e].event.picture);
+  return {{"id", ticket.id},
+          {"severity", std::round(100 * ticket.severity) / 100},
+          {"events", events},
+          {"picture", data_name(verdict.clips[c].clip.key) + picture_file(picture)}};
 }
 
 ordered_json page_clip(const EvaluatedClip& clip) {
@@ -179,8 +186,7 @@ bool write_report(const fs::path& folder, const Verdict& verdict, const Store& s
   ordered_json tickets = ordered_json::array();
   for (const Ticket& ticket : verdict.tickets) {
     tickets.push_back(page_ticket(ticket, verdict));
-    if (!tickets.back().contains("picture")) continue;
-    const auto& [c, e] = ticket.events[0];
+    const auto [c, e] = pictured(ticket, verdict);
     const EvaluatedClip& clip = verdict.clips[c];
     const auto picture = static_cast<std::size_t>(clip.events[e].event.picture);
     if (picture != picture_of(clip)) take(clip.clip.key, picture_file(picture));

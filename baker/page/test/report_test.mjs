@@ -54,7 +54,7 @@ test('the library is a list of tickets, the worst first, each with its other eve
   assert.ok(tickets.length > 1 && tickets.some(({ events }) => events.length > 1));
   assert.equal(await page.locator('#rows tr:not(.below)').count(), tickets.length);
   assert.ok((await rows())[0].includes(tickets[0].parts.join(' in ')));
-  await page.waitForFunction(() => document.querySelector('#rows img').naturalWidth > 0);
+  await page.waitForFunction(() => [...document.querySelectorAll('#rows img')].every(({ naturalWidth }) => naturalWidth > 0));
   const first = tickets.findIndex(({ events }) => events.length > 1);
   assert.equal(await page.locator('.below:visible').count(), 0);
   await page.locator('.more').first().click();

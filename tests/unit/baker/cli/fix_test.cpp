@@ -168,7 +168,7 @@ TEST_CASE("fix: a file of another format is mended as a binary glTF" * doctest::
   const auto penetrations = [&](const std::string& file, const char* name) {
     return tool::run("check " + file + " -o " + (folder.path / name).string()).out;
   };
-  CHECK(penetrations(source, "before").find("1 penetration;") != std::string::npos);
+  CHECK(penetrations(source, "before").find("1 penetration in 1 ticket;") != std::string::npos);
   const tool::Run run = tool::run("fix " + source + " -o " + out + " --report " + (folder.path / "report").string());
   CHECK_MESSAGE(run.code == 0, run.error);
   CHECK(run.out.find("1 cleared") != std::string::npos);

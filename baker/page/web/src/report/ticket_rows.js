@@ -77,7 +77,7 @@ export function elements(ticket) {
     h(
       'tr',
       { onclick: (click) => !click.target.closest('a, button') && (location.href = link) },
-      h('td', { class: 'picture' }, ticket.picture && h('img', { src: ticket.picture, loading: 'lazy', alt: '', width: 72, height: 72 })),
+      h('td', { class: 'picture' }, h('img', { src: ticket.picture, loading: 'lazy', alt: '', width: 72, height: 72 })),
       h('th', { scope: 'row' }, h('a', { href: characterLink(row), title: 'Where on its skin all its faults are' }, ticket.character)),
       h('td', {}, ticket.clips.length > 1 ? `${row.clip} and ${ticket.clips.length - 1} like it` : row.clip),
       h('td', {}, h('a', { href: link }, event.text), `, ${kindText(event)}${frames(event)}`, others.length > 0 && ' ', others.length > 0 && button),
