@@ -37,7 +37,7 @@ Parts unordered(const Parts& parts) {
   return std::min(own, other);
 }
 
-// The frames of a clip that an event has; two ranges where it goes over the seam of a loop.
+// The number of frames that two events of a clip of `end` frames share. One over the seam of a loop has two ranges.
 double shared_frames(const Event& a, const Event& b, double end) {
   const auto ranges = [&](const Event& e) {
     using Range = std::pair<double, double>;

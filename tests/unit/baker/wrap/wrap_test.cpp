@@ -220,11 +220,15 @@ TEST_CASE("a body that is cracked, split, flipped and full of holes at once is r
   check("all of it", broken, kRepairedWell);
 }
 
-TEST_CASE("an inner surface changes nothing; eyes, and a shell of hair, on a torn body are of its torso" *
-          doctest::test_suite("many bakes")) {
+TEST_CASE("an inner surface changes nothing that is seen from outside" * doctest::test_suite("many bakes")) {
   BrokenBody broken = intact_body();
   add_inner_surface(broken, 0.002);
   punch(broken, 0.01);
+  check("two surfaces", broken, kWrappedWell);
+}
+
+TEST_CASE("eyes, and a shell of hair, on a torn body are of its torso" * doctest::test_suite("many bakes")) {
+  BrokenBody broken = intact_body();
   add_hair(broken, 0.01);
   tear(broken, 5e-4);
   const Closed closed = close(broken.source, "hair");
