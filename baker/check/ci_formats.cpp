@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cctype>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
@@ -67,38 +67,46 @@ std::string fault_text(const EvaluatedEvent& evaluated) {
                      frame_text(event.deepest), worse.empty() ? worse : ", " + worse);
 }
 
-// The tickets of failing events of clip `c`, the worst first, each with these events below it.
-std::string testcase(const Verdict& verdict, std::size_t c) {
-  const EvaluatedClip& clip = verdict.clips[c];
+struct Failures {
+  int count = 0;
+  std::string lines;  // tickets, the worst first, each with its events of the clip below it
+};
+
+std::vector<Failures> failures_of_clips(const Verdict& verdict) {
+  std::vector<Failures> out(verdict.clips.size());
+  for (const Ticket& ticket : verdict.tickets) {
+    std::map<std::size_t, std::string> of_clip;
+    for (const auto& [c, e] : ticket.events) {
+      const EvaluatedEvent& evaluated = verdict.clips[c].events[e];
+      if (!evaluated.fails) continue;
+      ++out[c].count;
+      of_clip[c] += "  " + fault_text(evaluated) + "\n";
+    }
+    for (const auto& [c, events] : of_clip)
+      out[c].lines += fmt::format("{} (ticket {})\n{}", ticket.title, ticket.id, events);
+  }
+  return out;
+}
+
+std::string testcase(const EvaluatedClip& clip, const Failures& failures) {
   std::string out = fmt::format("  <testcase classname=\"{}\" name=\"{}\"", xml(clip.character),
                                 xml(clip.clip.clip.empty() ? "character" : clip.clip.clip));
   if (!clip.clip.error.empty()) return out + fmt::format("><error message=\"{}\"/></testcase>\n", xml(clip.clip.error));
   if (clip.clip.clip.empty()) return out + "><skipped message=\"no clips\"/></testcase>\n";
-  std::string lines;
-  int failing = 0;
-  for (const Ticket& ticket : verdict.tickets) {
-    std::string faults;
-    for (const auto& [ticket_clip, e] : ticket.events) {
-      if (ticket_clip != c || !clip.events[e].fails) continue;
-      ++failing;
-      faults += "  " + fault_text(clip.events[e]) + "\n";
-    }
-    if (!faults.empty()) lines += fmt::format("{} (ticket {})\n{}", ticket.title, ticket.id, faults);
-  }
-  if (failing == 0) return out + "/>\n";
-  return out + fmt::format("><failure message=\"{} {}\" type=\"penetration\">{}</failure></testcase>\n", failing,
-                           failing == 1 ? "fault" : "faults", xml(lines));
+  if (failures.count == 0) return out + "/>\n";
+  return out + fmt::format("><failure message=\"{} {}\" type=\"penetration\">{}</failure></testcase>\n", failures.count,
+                           failures.count == 1 ? "fault" : "faults", xml(failures.lines));
 }
 
 }  // namespace
 
 std::string check_junit(const Verdict& verdict) {
+  const std::vector<Failures> of_clips = failures_of_clips(verdict);
   int failures = 0;
   std::string cases;
   for (std::size_t c = 0; c < verdict.clips.size(); ++c) {
-    const std::vector<EvaluatedEvent>& events = verdict.clips[c].events;
-    failures += std::any_of(events.begin(), events.end(), [](const auto& e) { return e.fails; }) ? 1 : 0;
-    cases += testcase(verdict, c);
+    failures += of_clips[c].count > 0 ? 1 : 0;
+    cases += testcase(verdict.clips[c], of_clips[c]);
   }
   return fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n <testsuite name=\"spherechain check\" tests=\"{}\" "

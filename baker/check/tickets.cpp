@@ -188,7 +188,7 @@ class Grouping {
 }  // namespace
 
 std::vector<std::string> limbs_of(const std::vector<BodyPart>& parts) {
-  // Both sides that hang on a part, on itself or on one below it.
+  // Whether the part, or one that hangs on it, is left, and whether one is right.
   std::vector<std::array<bool, 2>> has_sides(parts.size(), {false, false});
   const auto up = [&](std::size_t i) { return static_cast<std::size_t>(parts[i].parent); };
   for (std::size_t i = 0; i < parts.size(); ++i) {
