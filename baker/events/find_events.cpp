@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "baker/motion/same_pose.h"
@@ -13,9 +14,11 @@ namespace {
 
 Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
 
-// A fault is worse than a contact that is none, however deep.
-std::pair<PenetrationClass, float> severity(const Penetration& found) {
-  return {is_fault(found.kind) ? found.kind : static_cast<PenetrationClass>(SC_CLASS_REST), found.measures.depth};
+// A fault is worse than a contact that is none, however deep; and one that is a fault by itself is worse than one that
+// only follows a fault.
+std::tuple<PenetrationClass, bool, float> severity(const Penetration& found) {
+  return {is_fault(found.kind) ? found.kind : static_cast<PenetrationClass>(SC_CLASS_REST), found.fault_depth > 0,
+          found.measures.depth};
 }
 
 TrianglePair triangles_of(const TriangleContact& contact) {
@@ -45,7 +48,7 @@ void EventFinder::look(const ClipFrames& clip, const std::function<void(int, con
     const Span<const TriangleContact> found_now = player_.triangles();
     const std::vector<TriangleContact> contacts(found_now.begin(), found_now.end());
     const std::size_t before = out.penetrations.size();
-    for (const Penetration& found : player_.measure_quickly()) {
+    for (const Penetration& found : player_.measure_quickly(nullptr, i > 0)) {
       out.penetrations.push_back({i, found});
       float& visible = out.penetrations.back().found.measures.visible;
       if (visible == 1 && !is_fault(found.kind)) visible = -1;  // nobody looked

@@ -92,20 +92,19 @@ const std::vector<Penetration>& SkinPlayer::find(const SkinPlayer* other, Query 
   return found_;
 }
 
-const std::vector<Penetration>& SkinPlayer::measure(const SkinPlayer* other, bool is_next) {
+const std::vector<Penetration>& SkinPlayer::find_next(const SkinPlayer* other, Query query, bool is_next) {
   std::vector<Penetration>& before = other == nullptr ? before_ : before_with_;
-  Query asked = query(SC_DETAIL_FULL);
-  asked.previous = is_next ? before.data() : nullptr;
-  asked.previous_count = is_next ? before.size() : 0;
-  find(other, asked);
+  query.previous = is_next ? before.data() : nullptr;
+  query.previous_count = is_next ? before.size() : 0;
+  find(other, query);
   before = found_;
   return found_;
 }
 
-const std::vector<Penetration>& SkinPlayer::measure_quickly(const PartPairBits* pairs) {
+const std::vector<Penetration>& SkinPlayer::measure_quickly(const PartPairBits* pairs, bool is_next) {
   Query asked = query(SC_DETAIL_QUICK);
   asked.part_pairs = pairs == nullptr ? nullptr : pairs->data();
-  return find(nullptr, asked);
+  return find_next(nullptr, asked, is_next);
 }
 
 std::optional<Penetration> SkinPlayer::measure_parts(std::uint32_t part_a, std::uint32_t part_b) {

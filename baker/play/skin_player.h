@@ -79,17 +79,20 @@ class SkinPlayer {
 
   // Penetrations of all classes in full, sorted by body parts. `is_next`: the pose follows the last one measured so,
   // and directions may follow that one's. A list holds until the next question.
-  const std::vector<Penetration>& measure(bool is_next) { return measure(nullptr, is_next); }
-  const std::vector<Penetration>& measure(const SkinPlayer& other, bool is_next) { return measure(&other, is_next); }
-  // The same by the quick form, as games do; of some pairs of body parts alone, or of all.
-  const std::vector<Penetration>& measure_quickly(const PartPairBits* pairs = nullptr);
+  const std::vector<Penetration>& measure(bool is_next) { return find_next(nullptr, query(SC_DETAIL_FULL), is_next); }
+  const std::vector<Penetration>& measure(const SkinPlayer& other, bool is_next) {
+    return find_next(&other, query(SC_DETAIL_FULL), is_next);
+  }
+  // The same by the quick form, as games do; of some pairs of body parts alone, or of all. `is_next`: the pose follows
+  // the last one that was measured at all.
+  const std::vector<Penetration>& measure_quickly(const PartPairBits* pairs = nullptr, bool is_next = false);
   // Measures two body parts alone, in full, without history. Empty if they do not intersect.
   std::optional<Penetration> measure_parts(std::uint32_t part_a, std::uint32_t part_b);
 
  private:
   Query query(Detail detail) const;
   Span<const TriangleContact> triangles(const SkinPlayer* other, Scope scope);
-  const std::vector<Penetration>& measure(const SkinPlayer* other, bool is_next);
+  const std::vector<Penetration>& find_next(const SkinPlayer* other, Query query, bool is_next);
   const std::vector<Penetration>& find(const SkinPlayer* other, Query query);
 
   const OpenAsset& asset_;
@@ -97,7 +100,7 @@ class SkinPlayer {
   BodyDef def_;
   Body body_;
   sc_pose pose_{};
-  std::vector<Penetration> found_, before_, before_with_;  // before: of the last measure(), alone and with another
+  std::vector<Penetration> found_, before_, before_with_;  // before: of the last of these, alone and with another
 };
 
 }  // namespace spherechain::baker

@@ -65,6 +65,7 @@ ordered_json penetrations_json(const AnimatedAsset& animated, const std::vector<
                    {"class", sc_penetration_class_name(found.kind)},
                    {"depth_mm", mm * double{found.measures.depth}},
                    {"depth_percent", 100 * double{found.measures.depth} / double{found.measures.height}},
+                   {"fault_depth_mm", mm * double{found.fault_depth}},
                    {"swallowed", found.measures.swallowed},
                    {"direction", {found.direction.x, found.direction.y, found.direction.z}},
                    {"volume_ml", known(ml)},

@@ -5,12 +5,12 @@
 
 namespace spherechain::baker {
 
-Piece largest_piece(const Mesh& mesh) {
+LargestPiece largest_piece(const Mesh& mesh) {
   const Components components = connected_components(mesh);
   std::vector<double> area(components.count, 0.0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) area[components.of_triangle[t]] += triangle_area(mesh, t);
   const auto largest = static_cast<Index>(std::max_element(area.begin(), area.end()) - area.begin());
-  Piece piece;
+  LargestPiece piece;
   std::vector<Index> place(mesh.positions.size(), kNoIndex);
   for (Index t = 0; t < mesh.triangles.size(); ++t) {
     if (components.of_triangle[t] != largest) continue;

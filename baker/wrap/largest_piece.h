@@ -8,11 +8,11 @@
 namespace spherechain::baker {
 
 // The connected piece of a mesh with the largest area.
-struct Piece {
+struct LargestPiece {
   Mesh mesh;
   std::vector<Index> of_vertex, of_triangle;  // its vertex or triangle -> the mesh's
 };
 
-Piece largest_piece(const Mesh& mesh);
+LargestPiece largest_piece(const Mesh& mesh);
 
 }  // namespace spherechain::baker

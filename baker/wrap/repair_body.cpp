@@ -45,7 +45,7 @@ Attempt<BodyMesh> repair_body(const Character& character, ClosingReport& report)
   report.parted = stitched.parted;
   report.holes = stitched.holes;
 
-  Piece piece = largest_piece(stitched.mesh);
+  LargestPiece piece = largest_piece(stitched.mesh);
   double area = 0;
   std::vector<Index> source_triangle;
   for (std::size_t t = 0; t < piece.of_triangle.size(); ++t) {

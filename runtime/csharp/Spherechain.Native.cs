@@ -290,17 +290,17 @@ namespace Spherechain
         public float AtRest;
         /// <summary>shell: less than this share of the line is visible</summary>
         public float Hidden;
-        /// <summary>shell: the two spots are on two pieces of skin, and closer than this at rest</summary>
+        /// <summary>shell: two pieces of skin whose spots are near at rest, up to that share of loose_depth</summary>
         public float Shell;
-        /// <summary>fold: the two spots are on parts that are near each other, and closer than this at rest</summary>
+        /// <summary>fold: a joint lies between the two parts and their spots are near at rest: up to that share of fold_depth or loose_depth. Parts that hang on each other: always</summary>
         public float Fold;
-        /// <summary>fold: two spots of any parts are closer than this at rest. A joint may lack a bone</summary>
+        /// <summary>fold: the same of any two parts. A joint may lack a bone</summary>
         public float Neighbours;
-        /// <summary>fold: the sides face each other more than this: a thigh lies flat on the abdomen</summary>
-        public float FoldFacing;
-        /// <summary>deep fold: a fold within one piece of skin is deeper than this</summary>
-        public float DeepFold;
-        /// <summary>inside: at least this share of the part is swallowed; or it comes out again</summary>
+        /// <summary>within one piece of skin. A deeper fold of spots closer than the limit is a deep fold</summary>
+        public float FoldDepth;
+        /// <summary>of two pieces of skin; on parts that hang on each other any depth is allowed</summary>
+        public float LooseDepth;
+        /// <summary>inside: at least this share of the part is swallowed; or it comes out again. From three quarters of it on the allowed depths shrink to 0</summary>
         public float Inside;
     }
 
@@ -341,6 +341,8 @@ namespace Spherechain
         public uint Joint;
         public PenetrationClass Kind;
         public Vec3 Direction;
+        /// <summary>how much deeper than the rule allows: 0 or more, continuous in the pose; shallower where less of it can be seen. It does not depend on `previous`</summary>
+        public float FaultDepth;
         /// <summary>measures.depth; up to 1.5 times as much where `previous` keeps the direction</summary>
         public float Distance;
         /// <summary>of the line where the parts cross; of the ground: of the box</summary>
@@ -398,13 +400,13 @@ namespace Spherechain
 #endif
         const CallingConvention Cdecl = CallingConvention.Cdecl;
 
-        public const uint AbiVersion = 13;
+        public const uint AbiVersion = 14;
         public const uint AssetAlignment = 8;
         public const uint Floor = 0xFFFFFFFFu;
         public const uint NoJoint = 0xFFFFFFFFu;
         public const uint NoPart = 0xFFFFFFFFu;
         public const uint NoTriangle = 0xFFFFFFFFu;
-        public const uint RuleVersion = 3;
+        public const uint RuleVersion = 4;
         // Left out: SC_WHOLE_SOURCE: its width depends on the machine: pass new UIntPtr(UIntPtr.Size == 8 ? ulong.MaxValue : uint.MaxValue).
 
         public unsafe struct Asset  // sc_asset

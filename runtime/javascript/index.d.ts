@@ -197,6 +197,8 @@ export interface Penetration {
   kind: PenetrationClass;
   /** Unit length. `part`, moved by distance * direction, no longer intersects `other`. */
   direction: Float32Array;
+  /** How much deeper than the rule allows, less where little of it is seen: continuous in the pose, 0 where it is no fault. */
+  faultDepth: number;
   /** Measures.depth. With `previous`, up to 1.5 times as much where the direction of the last frame is kept. */
   distance: number;
   /** Centre of the line in which the parts cross, and a box around that line. For the ground: a box of the skin below it, and its centre. */
@@ -246,7 +248,7 @@ export interface Measures {
 
 /** The limits of a class, as sc_rule in rule.h explains them. */
 export type Rule = Record<'version' | 'touchDepth' | 'touchMetres' | 'touchMin' | 'touchMax' | 'touchTimes' | 'extent' | 'atRest' | 'hidden' |
-  'shell' | 'fold' | 'neighbours' | 'foldFacing' | 'deepFold' | 'inside', number>;
+  'shell' | 'fold' | 'neighbours' | 'foldDepth' | 'looseDepth' | 'inside', number>;
 
 export interface Contacts {
   /** partA <= partB of one body; of two, partB is of the other one. Low and high: a box around the triangles that intersect. */

@@ -68,7 +68,7 @@ Ways ways_of(Case& c, PenetrationJob& job, Target& other) {
 const Rule& bad_rule() {
   static const Rule rule = [] {
     Rule out = sc_default_rule();
-    out.deep_fold = NAN;
+    out.fold_depth = NAN;
     return out;
   }();
   return rule;

@@ -99,9 +99,9 @@ test('a query says what is listed', () => {
   // The classes of full measurements follow from them, by any rule.
   const full = body.penetrations({ detail: 'full', classes: spherechain.classes });
   for (const { kind, measures } of full) assert.equal(spherechain.classify(measures), kind);
-  const { depth } = full[0].measures, { version, touchDepth, deepFold, inside } = spherechain.defaultRule;
-  assert.deepEqual([version, touchDepth], [3, 0]);
-  assert.ok(deepFold > 0 && inside > 0.5 && inside <= 1);
+  const { depth } = full[0].measures, { version, touchDepth, foldDepth, inside } = spherechain.defaultRule;
+  assert.deepEqual([version, touchDepth], [4, 0]);
+  assert.ok(foldDepth > 0 && inside > 0.5 && inside <= 1);
   assert.equal(spherechain.classify({ ...full[0].measures, swallowed: 1 }), 'inside');
   assert.equal(spherechain.classify(full[0].measures, { touchDepth: 2 * depth, hidden: 0, shell: 0, fold: 0, neighbours: 0 }), 'touch');
   assert.equal(body.penetrations({ rule: { ...spherechain.defaultRule, touchDepth: 2 * depth } }).length, 0);

@@ -41,9 +41,9 @@ export function addPartContact(hash, contact) {
   hash.words([contact.partA, contact.partB, contact.trianglePairs]);
   hash.floats([...contact.low, ...contact.high]);
 }
-export function addPenetration(hash, { part, other, joint, kind, direction, distance, centre, low, high, deepest, deepestOther, measures }) {
+export function addPenetration(hash, { part, other, joint, kind, direction, faultDepth, distance, centre, low, high, deepest, deepestOther, measures }) {
   hash.words([part, other, joint, KINDS.indexOf(kind)]);
-  hash.floats([...direction, distance, ...centre, ...low, ...high]);
+  hash.floats([...direction, faultDepth, distance, ...centre, ...low, ...high]);
   for (const point of [deepest, deepestOther]) {
     hash.floats(point.position);
     hash.words([point.triangle]);

@@ -25,10 +25,10 @@ SC_ENUM(sc_relation){
     SC_RELATION_TWO_BODIES = 4, /* they are of two bodies */
 };
 
-/* The measurements of two body parts that intersect. The class follows from them alone, so you can store them and
- * classify them again; in the ground it follows from the depth alone. A quick query (SC_DETAIL_QUICK) measures only as
- * much as its own rule needs. The measurements of SC_DETAIL_FULL fit any rule if `extent` is known, or if the rule
- * sets touch_depth. */
+/* The measurements of two body parts that intersect. Without sc_query.previous the class follows from them
+ * alone, so you can store them and classify them again; in the ground it follows from the depth alone. A quick query
+ * (SC_DETAIL_QUICK) measures only as much as its own rule needs. The measurements of SC_DETAIL_FULL fit any rule if
+ * `extent` is known, or if the rule sets touch_depth. */
 typedef struct sc_measures {
   float depth;          /* > 0: the way out; the pose's units */
   float volume;         /* of the one part inside the other; negative: not known. The pose's units */
@@ -48,9 +48,11 @@ typedef struct sc_measures {
   int32_t through;      /* 1: some of `part` is inside, and its limb comes out again on the other side */
 } sc_measures;
 
-/* The limits of the classes. A fault is an intersection that a person would mend; sc_default_rule() was tuned on judged
- * pictures (docs/concepts.md). Lengths are shares of the character's height, except touch_depth and touch_metres. If a
- * default changes, the version changes. */
+/* The limits of the classes. Each reason that excuses an intersection (touch, fold, shell) allows a depth. An
+ * intersection is a fault where it is deeper than all of these, visible, and not there at rest (docs/concepts.md).
+ * "Near at rest" is a share: 1 for spots closer than half of the field's limit, a half at it, 0 from one and a half
+ * times it on. Lengths are shares of the character's height, except touch_depth and touch_metres. If a default changes,
+ * the version changes. */
 typedef struct sc_rule {
   uint32_t version;  /* SC_RULE_VERSION; others are refused */
   float touch_depth; /* 0: the next five fields decide what is a touch. Else depth alone decides: shallower
@@ -62,15 +64,17 @@ typedef struct sc_rule {
   float extent;      /* touch: sc_measures.extent is below this, see touch_times */
   float at_rest;     /* rest: at least this share of the triangle pairs touches at rest */
   float hidden;      /* shell: less than this share of the line is visible */
-  float shell;       /* shell: the two spots are on two pieces of skin, and closer than this at rest */
-  float fold;        /* fold: the two spots are on parts that are near each other, and closer than this at rest */
-  float neighbours;  /* fold: two spots of any parts are closer than this at rest. A joint may lack a bone */
-  float fold_facing; /* fold: the sides face each other more than this: a thigh lies flat on the abdomen */
-  float deep_fold;   /* deep fold: a fold within one piece of skin is deeper than this */
-  float inside;      /* inside: at least this share of the part is swallowed; or it comes out again */
+  float shell;       /* shell: two pieces of skin whose spots are near at rest, up to that share of loose_depth */
+  float fold;        /* fold: a joint lies between the two parts and their spots are near at rest: up to that share of
+                        fold_depth or loose_depth. Parts that hang on each other: always */
+  float neighbours;  /* fold: the same of any two parts. A joint may lack a bone */
+  float fold_depth;  /* within one piece of skin. A deeper fold of spots closer than the limit is a deep fold */
+  float loose_depth; /* of two pieces of skin; on parts that hang on each other any depth is allowed */
+  float inside;      /* inside: at least this share of the part is swallowed; or it comes out again. From three quarters
+                        of it on the allowed depths shrink to 0 */
 } sc_rule;
 
-#define SC_RULE_VERSION 3
+#define SC_RULE_VERSION 4
 
 #if defined(__cplusplus)
 extern "C" {

@@ -34,9 +34,9 @@ static_assert(sizeof(sc_contacts) == 8 * 4 && offsetof(sc_contacts, triangles) =
 static_assert(sizeof(sc_sphere_pairs) == 5 * 4 && offsetof(sc_sphere_pairs, pairs) == 2 * 4);
 static_assert(sizeof(sc_part_contact) == 9 * 4 && offsetof(sc_part_contact, low) == 3 * 4);
 static_assert(sizeof(sc_triangle_contact) == 12 * 4 && offsetof(sc_triangle_contact, from) == 6 * 4);
-static_assert(sizeof(sc_penetration) == 46 * 4 && offsetof(sc_penetration, direction) == 4 * 4);
-static_assert(offsetof(sc_penetration, centre) == 8 * 4 && offsetof(sc_penetration, deepest) == 17 * 4);
-static_assert(offsetof(sc_penetration, measures) == 31 * 4 && offsetof(sc_measures, relation) == 11 * 4);
+static_assert(sizeof(sc_penetration) == 47 * 4 && offsetof(sc_penetration, direction) == 4 * 4);
+static_assert(offsetof(sc_penetration, centre) == 9 * 4 && offsetof(sc_penetration, deepest) == 18 * 4);
+static_assert(offsetof(sc_penetration, measures) == 32 * 4 && offsetof(sc_measures, relation) == 11 * 4);
 static_assert(offsetof(sc_measures, through) == 14 * 4);
 static_assert(sizeof(sc_step_contact) == 11 * 4 && offsetof(sc_step_contact, triangle_a) == 6 * 4);
 

@@ -166,12 +166,12 @@ const Measures = struct({
   relation: choice('apart', 'near', 'siblings', 'joined', 'two_bodies'), isOnePiece: flag, swallowed: float, through: flag,
 });
 const Penetration = struct({
-  part: int, other: int, joint: int, kind: classOf, direction: vec3, distance: float, centre: vec3, low: vec3, high: vec3,
+  part: int, other: int, joint: int, kind: classOf, direction: vec3, faultDepth: float, distance: float, centre: vec3, low: vec3, high: vec3,
   deepest: SkinPoint, deepestOther: SkinPoint, measures: Measures,
 });
 const Rule = struct({
   version: int, touchDepth: float, touchMetres: float, touchMin: float, touchMax: float, touchTimes: float, extent: float,
-  atRest: float, hidden: float, shell: float, fold: float, neighbours: float, foldFacing: float, deepFold: float,
+  atRest: float, hidden: float, shell: float, fold: float, neighbours: float, foldDepth: float, looseDepth: float,
   inside: float,
 });
 const BodyDef = struct({

@@ -16,8 +16,9 @@ _POINT = np.dtype([("position", "f4", 3), ("triangle", "u4"), ("weights", "f4", 
 #: Two body parts that intersect, as the C library has them: sc_penetration, and from "depth" on its sc_measures. Lengths
 #: in the pose's units; a volume, thickness or extent below zero is not known.
 PENETRATION = np.dtype([
-    ("part", "u4"), ("other", "u4"), ("joint", "u4"), ("kind", "i4"), ("direction", "f4", 3), ("distance", "f4"),
-    ("centre", "f4", 3), ("low", "f4", 3), ("high", "f4", 3), ("deepest", _POINT), ("deepest_other", _POINT),
+    ("part", "u4"), ("other", "u4"), ("joint", "u4"), ("kind", "i4"), ("direction", "f4", 3),
+    ("fault_depth", "f4"), ("distance", "f4"), ("centre", "f4", 3), ("low", "f4", 3), ("high", "f4", 3),
+    ("deepest", _POINT), ("deepest_other", _POINT),
     ("depth", "f4"), ("volume", "f4"), ("contour_length", "f4"), ("visible", "f4"), ("touching", "f4"), ("facing", "f4"),
     ("rest_distance", "f4"), ("thickness", "f4"), ("extent", "f4"), ("height", "f4"), ("metre", "f4"),
     ("relation", "i4"), ("is_one_piece", "i4"), ("swallowed", "f4"), ("through", "i4")])
@@ -46,7 +47,7 @@ _NONE = 0xFFFFFFFF  # no joint; the ground in place of a part
 #: The limits of classes (sc_rule), with the library's defaults. `Rule(touch_depth=0.003)`.
 Rule = NamedTuple("Rule", [(name, float) for name in (  # type: ignore[misc]
     "touch_depth", "touch_metres", "touch_min", "touch_max", "touch_times", "extent", "at_rest", "hidden", "shell", "fold",
-    "neighbours", "fold_facing", "deep_fold", "inside")])
+    "neighbours", "fold_depth", "loose_depth", "inside")])
 Rule.__new__.__defaults__ = tuple(_native.Model.default_rule())
 
 
@@ -59,6 +60,7 @@ class Penetration(NamedTuple):
     depth: float  #: the shortest way out
     depth_mm: float  #: the same in millimetres, by the model's metres_per_unit
     depth_percent: float  #: the same in % of the height
+    fault_depth: float  #: how much deeper than the rule allows, less where little of it is seen; continuous in the pose
     distance: float  #: `part`, moved so far in `direction`, is free of `other`
     direction: NDArray[np.float32]  #: (3,), of unit length
     joint: Optional[int]  #: moves `part`, into Model.joints
@@ -132,8 +134,8 @@ class Penetrations(_List):
         return Penetration(
             self._names[0][row["part"]], "ground" if row["other"] == _NONE else self._names[1][row["other"]],
             CLASSES[row["kind"]], float(row["depth"]), float(row["depth"]) * self._mm_per_unit,
-            100 * float(row["depth"] / row["height"]), float(row["distance"]), row["direction"],
-            None if row["joint"] == _NONE else int(row["joint"]), float(row["volume"]) if row["volume"] >= 0 else None,
+            100 * float(row["depth"] / row["height"]), float(row["fault_depth"]), float(row["distance"]),
+            row["direction"], None if row["joint"] == _NONE else int(row["joint"]), float(row["volume"]) if row["volume"] >= 0 else None,
             float(row["visible"]), float(row["swallowed"]), bool(row["through"]), row["deepest"]["position"],
             row["deepest_other"]["position"], row["centre"], row["low"], row["high"])
 

@@ -185,7 +185,9 @@ class Measurer {
     out.measures.height = static_cast<float>(height);
     out.measures.metre = static_cast<float>(metre);
     out.measures.relation = SC_RELATION_TWO_BODIES;
-    out.kind = -deepest < touch_depth_of(limits, metre, height) ? SC_CLASS_TOUCH : SC_CLASS_PENETRATION;
+    const double beyond = -deepest - touch_depth_of(limits, metre, height);
+    out.kind = beyond < 0 ? SC_CLASS_TOUCH : SC_CLASS_PENETRATION;
+    out.fault_depth = static_cast<float>(std::max(beyond, 0.0));
     out.direction = job_.up;
     out.centre = to_float(below.centre());
     out.low = to_float(below.low);

@@ -60,6 +60,8 @@ class Measurer {
  public:
   explicit Measurer(const Meeting& in)
       : in_(in),
+        eased_(eased(in.limits)),
+        limits_(&in.limits),
         surface_a_(*in.a.surface),
         surface_b_(*in.b.surface),
         rest_height_(double{in.a.asset->info().height}),
@@ -370,6 +372,7 @@ class Measurer {
     }
     parts.contour.center = 0.5 * (low + high);
     parts.contour.rest_distance = HUGE_VAL;
+    limits_ = &in_.limits;
     Penetration out{};
     out.part = static_cast<std::uint32_t>(parts.swaps ? parts.b : parts.a);
     out.other = static_cast<std::uint32_t>(parts.swaps ? parts.a : parts.b);
@@ -381,6 +384,7 @@ class Measurer {
 
   Penetration measure(const TwoParts& parts) {
     const Contour& contour = parts.contour;
+    limits_ = was_fault(parts) ? &eased_ : &in_.limits;
     set_sides(parts.all, contour.center, parts.a, parts.b);
     Exit exit = first_exit(sweep_, contour, kNear * height_);
     // All of the line is in sight, as far as its own sides do not hide it.
@@ -391,8 +395,7 @@ class Measurer {
       return quick;
     }
     pose_all_skins();
-    const ExitSettings settings{is_fold(in_.limits, quick.measures) ? double{in_.limits.deep_fold} * height_ : 0,
-                                are_joined(parts.a, parts.b)};
+    const ExitSettings settings{fold_depth_of(in_.limits, quick.measures), are_joined(parts.a, parts.b)};
     exit = shortest_exit(sweep_, contour, settings, exit);
     Double3 axes[3];
     axes_of(contour, exit.direction, axes);
@@ -404,7 +407,7 @@ class Measurer {
     }
     if (out.kind == SC_CLASS_INSIDE && !parts.passes_through && double{out.distance} < core_radius(parts)) {
       set_way(parts, parted(parts, previous), out);
-      out.measures.depth = out.distance;
+      out.measures.depth = out.fault_depth = out.distance;
       return out;
     }
     if (!in_.quick) {
@@ -415,7 +418,7 @@ class Measurer {
 
   Seen look(const TwoParts& parts, const Double3 (&axes)[3]) {
     const Seen seen = memory_.visibility.look(parts.contour, axes, kClearance * height_);
-    if (!(seen.share < double{in_.limits.hidden}) || parts.contour.segments.size == parts.all.size) {
+    if (!(seen.share < 2 * double{in_.limits.hidden}) || parts.contour.segments.size == parts.all.size) {
       return seen;
     }
     // In sight below an open coat?
@@ -459,14 +462,15 @@ class Measurer {
     if (known != nullptr) {
       out.measures.thickness = known->measures.thickness;
       out.measures.extent = known->measures.extent;
-    } else if (depends_on_extent(in_.limits, out.measures)) {
+    } else if (depends_on_extent(*limits_, out.measures) || depends_on_extent(in_.limits, out.measures)) {
       const SkinPoint &a = parts.swaps ? out.deepest_other : out.deepest,
                       &b = parts.swaps ? out.deepest : out.deepest_other;
       const double thin = thickness_of(parts, exit.direction, a.position, b.position);
       out.measures.thickness = static_cast<float>(thin);
       out.measures.extent = static_cast<float>(double{out.distance} / thin * seen.length / parts.side);
     }
-    out.kind = sc_classify(&in_.limits, &out.measures);
+    out.kind = sc_classify(limits_, &out.measures);
+    out.fault_depth = fault_depth_of(in_.limits, out.measures);
     out.part = static_cast<std::uint32_t>(parts.swaps ? parts.b : parts.a);
     out.other = static_cast<std::uint32_t>(parts.swaps ? parts.a : parts.b);
     out.joint = static_cast<std::uint32_t>(in_.a.asset->part(out.part).bone);  // -1 is SC_NO_JOINT
@@ -530,6 +534,14 @@ class Measurer {
     return {0, 0, 0};
   }
 
+  bool was_fault(const TwoParts& parts) const {
+    return std::any_of(in_.previous.begin(), in_.previous.end(), [&](const Penetration& last) {
+      const bool are_these = last.part == parts.a && last.other == parts.b;
+      const bool are_swapped = in_.are_one && last.part == parts.b && last.other == parts.a;
+      return (are_these || are_swapped) && is_fault(last.kind);
+    });
+  }
+
   bool hangs_on(std::size_t a, std::size_t b) const {
     return in_.a.asset->part(a).parent == static_cast<std::int32_t>(b);
   }
@@ -591,6 +603,8 @@ class Measurer {
   }
 
   const Meeting& in_;
+  const Rule eased_;
+  const Rule* limits_;  // of the two parts that are measured: the query's, or eased_
   const Surface &surface_a_, &surface_b_;
   double rest_height_, height_, metre_;  // at rest; in the pose
   Memory memory_;

@@ -15,39 +15,98 @@ constexpr Rule kDefault = [] {
   out.touch_min = 0.0019F;  // files without a unit make giants and dwarfs
   out.touch_max = 0.0066F;
   out.touch_times = 10;
-  out.inside = 0.6F;
   out.extent = 0.25F;
   out.at_rest = 0.5F;
   out.hidden = 0.3F;
   out.shell = 0.035F;
   out.fold = 0.11F;
   out.neighbours = 0.055F;
-  out.fold_facing = 0.2F;
-  out.deep_fold = 0.045F;
+  out.fold_depth = 0.045F;
+  out.loose_depth = 0.06F;
+  out.inside = 0.6F;
   return out;
 }();
+
+constexpr double kAnyDepth = 1e30;
+constexpr float kEase = 0.7F;  // of what is allowed
+
+// How close two spots are at rest: 1 up to half of the limit, a half at it, 0 from one and a half times it on.
+double closeness(float distance, float limit) {
+  return limit > 0 ? std::clamp(1.5 - double{distance} / double{limit}, 0.0, 1.0) : 0.0;
+}
+
+// The same of two parts that a joint folds.
+double fold_closeness(const Rule& rule, const Measures& of) {
+  switch (of.relation) {
+    case SC_RELATION_TWO_BODIES:
+      return 0;
+    case SC_RELATION_JOINED:
+      return 1;
+    case SC_RELATION_APART:
+      return closeness(of.rest_distance, rule.neighbours);
+    default:
+      return closeness(of.rest_distance, rule.fold);
+  }
+}
+
+// From 0 at the limit to 1 at twice the limit.
+double share_above(double value, double limit) { return limit > 0 ? std::clamp(value / limit - 1, 0.0, 1.0) : 1.0; }
+
+// How near the part is to being inside: from 0 at three quarters of the share that makes it so, to 1.
+double almost_inside(const Rule& rule, const Measures& of) {
+  return of.through != 0 || !(rule.inside > 0)
+             ? 1
+             : std::clamp(4 * double{of.swallowed} / double{rule.inside} - 3, 0.0, 1.0);
+}
+
+// The depths up to which an intersection is no fault, by the reason.
+struct Allowed {
+  double shell, touch, fold, thin;
+  double most() const { return std::max({shell, touch, fold, thin}); }
+};
+
+Allowed allowed(const Rule& rule, const Measures& of) {
+  const bool is_loose = of.is_one_piece == 0;
+  // Pieces on parts that a joint joins, a sleeve on an arm, slide in each other as deep as they like.
+  const double deepest = is_loose && of.relation == SC_RELATION_JOINED
+                             ? kAnyDepth
+                             : double{is_loose ? rule.loose_depth : rule.fold_depth} * double{of.height};
+  Allowed out{};
+  out.shell = is_loose ? deepest * closeness(of.rest_distance, rule.shell) : 0;
+  out.touch = touch_depth_of(rule, double{of.metre}, double{of.height});
+  out.fold = deepest * fold_closeness(rule, of);
+  // A depth that the caller sets is a limit: nothing deeper is a touch.
+  if (!(rule.touch_depth > 0)) {
+    const double most = double{rule.touch_times} * out.touch;
+    out.thin = of.extent > 0 ? std::min(most, double{of.depth} * double{rule.extent} / double{of.extent}) : most;
+  }
+  const double share = 1 - almost_inside(rule, of);
+  return {share * out.shell, share * out.touch, share * out.fold, share * out.thin};
+}
 
 PenetrationClass classify(const Rule& rule, const Measures& of) {
   if (of.swallowed >= rule.inside || of.through != 0) {
     return SC_CLASS_INSIDE;
   }
-  if (of.touching >= rule.at_rest) {
+  const bool is_out = almost_inside(rule, of) == 0;
+  if (is_out && of.touching >= rule.at_rest) {
     return SC_CLASS_REST;
   }
-  if (of.visible < rule.hidden || (of.is_one_piece == 0 && of.rest_distance < rule.shell)) {
+  const Allowed up_to = allowed(rule, of);
+  const double depth = double{of.depth};
+  if ((is_out && of.visible < rule.hidden) || depth < up_to.shell) {
     return SC_CLASS_SHELL;
   }
-  const double touch = touch_depth_of(rule, double{of.metre}, double{of.height}), depth = double{of.depth};
-  if (depth < touch) {
+  if (depth < up_to.touch) {
     return SC_CLASS_TOUCH;
   }
-  if (is_fold(rule, of)) {
-    return depth > double{rule.deep_fold} * double{of.height} && of.is_one_piece != 0 ? SC_CLASS_DEEP_FOLD
-                                                                                      : SC_CLASS_FOLD;
+  if (depth < up_to.fold) {
+    return SC_CLASS_FOLD;
   }
-  // A depth that the caller sets is a limit: nothing deeper is a touch.
-  const bool may_touch = !(rule.touch_depth > 0) && depth < double{rule.touch_times} * touch;
-  return may_touch && !(of.extent >= rule.extent) ? SC_CLASS_TOUCH : SC_CLASS_PENETRATION;
+  if (depth < up_to.thin) {
+    return SC_CLASS_TOUCH;
+  }
+  return of.is_one_piece != 0 && fold_closeness(rule, of) > 0.5 ? SC_CLASS_DEEP_FOLD : SC_CLASS_PENETRATION;
 }
 
 }  // namespace
@@ -56,9 +115,9 @@ Status check_rule(const sc_rule* rule) {
   if (rule == nullptr) {
     return done();
   }
-  const float limits[] = {rule->touch_depth, rule->touch_metres, rule->touch_min, rule->touch_max, rule->touch_times,
-                          rule->extent,      rule->at_rest,      rule->hidden,    rule->shell,     rule->fold,
-                          rule->neighbours,  rule->fold_facing,  rule->deep_fold, rule->inside};
+  const float limits[] = {rule->touch_depth, rule->touch_metres, rule->touch_min,   rule->touch_max, rule->touch_times,
+                          rule->extent,      rule->at_rest,      rule->hidden,      rule->shell,     rule->fold,
+                          rule->neighbours,  rule->fold_depth,   rule->loose_depth, rule->inside};
   const bool are_finite = std::all_of(std::begin(limits), std::end(limits), [](float l) { return std::isfinite(l); });
   return rule->version == SC_RULE_VERSION && are_finite && rule->touch_depth >= 0 ? done()
                                                                                   : refuse(SC_BAD_VALUE, SC_FIELD_RULE);
@@ -70,22 +129,31 @@ double touch_depth_of(const Rule& rule, double metre, double height) {
                                          double{rule.touch_max} * height);
 }
 
-bool is_fold(const Rule& rule, const Measures& of) {
-  if (of.relation == SC_RELATION_TWO_BODIES) {
-    return false;
-  }
-  if (of.relation == SC_RELATION_JOINED || of.rest_distance < rule.neighbours) {
-    return true;
-  }
-  const bool lie_close = of.relation == SC_RELATION_NEAR && (of.facing > rule.fold_facing || of.is_one_piece == 0);
-  return (of.relation == SC_RELATION_SIBLINGS || lie_close) && of.rest_distance < rule.fold;
+float fault_depth_of(const Rule& rule, const Measures& of) {
+  const double seen = share_above(double{of.visible}, double{rule.hidden}) *
+                      share_above(1 - double{of.touching}, 1 - double{rule.at_rest});
+  return static_cast<float>(std::max(seen, almost_inside(rule, of)) *
+                            std::max(double{of.depth} - allowed(rule, of).most(), 0.0));
+}
+
+double fold_depth_of(const Rule& rule, const Measures& of) {
+  return double{rule.fold_depth} * double{of.height} * fold_closeness(rule, of);
 }
 
 bool depends_on_extent(const Rule& rule, const Measures& of) {
   Measures all = of, none = of;
-  all.extent = rule.extent;
+  all.extent = HUGE_VALF;
   none.extent = 0;
-  return classify(rule, all) != classify(rule, none);
+  return classify(rule, all) != classify(rule, none) || fault_depth_of(rule, all) != fault_depth_of(rule, none);
+}
+
+Rule eased(Rule rule) {
+  for (float* limit : {&rule.touch_depth, &rule.touch_metres, &rule.touch_min, &rule.touch_max, &rule.extent,
+                       &rule.hidden, &rule.fold_depth, &rule.loose_depth}) {
+    *limit *= kEase;
+  }
+  rule.at_rest = 1 - kEase * (1 - rule.at_rest);
+  return rule;
 }
 
 }  // namespace spherechain

@@ -11,8 +11,13 @@ namespace spherechain {
 Status check_rule(const sc_rule* rule);
 // The depth below which two skins just touch.
 double touch_depth_of(const Rule& rule, double metre, double height);
-bool is_fold(const Rule& rule, const Measures& of);
-// Does the class depend on `extent`, which is the dearest to measure?
+// How deep a fold may be; 0 where no joint folds the two spots.
+double fold_depth_of(const Rule& rule, const Measures& of);
+// sc_penetration.fault_depth.
+float fault_depth_of(const Rule& rule, const Measures& of);
+// The rule for two parts that were a fault a frame ago: a fault goes on until it is clearly none.
+Rule eased(Rule rule);
+// Does class or fault depth depend on `extent`, which is the dearest to measure?
 bool depends_on_extent(const Rule& rule, const Measures& of);
 
 }  // namespace spherechain

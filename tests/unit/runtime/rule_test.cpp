@@ -44,7 +44,10 @@ TEST_CASE("a class changes at its limit, and what is measured beyond that change
       {&Measures::touching, below(0.5F), 0.5F, SC_CLASS_PENETRATION, SC_CLASS_REST},
       {&Measures::visible, below(0.3F), 0.3F, SC_CLASS_SHELL, SC_CLASS_PENETRATION},
       {&Measures::depth, 0.0033F, 0.0034F, SC_CLASS_TOUCH, SC_CLASS_PENETRATION},  // 0.19 % of the height, above 3 mm
-      {&Measures::rest_distance, below(0.055F), 0.055F, SC_CLASS_FOLD, SC_CLASS_PENETRATION},
+      // 50 mm are 2.86 % of the height: 63 % of what a fold may have.
+      {&Measures::rest_distance, 0.047F, 0.049F, SC_CLASS_FOLD, SC_CLASS_DEEP_FOLD},
+      {&Measures::rest_distance, below(0.055F), 0.055F, SC_CLASS_DEEP_FOLD, SC_CLASS_PENETRATION},
+      {&Measures::swallowed, below(0.6F), 0.6F, SC_CLASS_PENETRATION, SC_CLASS_INSIDE},
   };
   Measures thin = hand_in_thigh();
   thin.depth = 0.02F;
@@ -64,28 +67,71 @@ TEST_CASE("a class changes at its limit, and what is measured beyond that change
 
 TEST_CASE("a fold depends on how the parts hang together, and is a fault once it is deep") {
   Measures of = hand_in_thigh();
-  of.rest_distance = std::nextafter(0.11F, 0.0F);
+  of.rest_distance = 0.09F;
   CHECK(classify(of) == SC_CLASS_PENETRATION);
-  of.relation = SC_RELATION_SIBLINGS;
-  CHECK(classify(of) == SC_CLASS_FOLD);
-  of.relation = SC_RELATION_NEAR;
-  CHECK(classify(of) == SC_CLASS_PENETRATION);
-  of.facing = 0.3F;  // a thigh lies flat on the abdomen
-  CHECK(classify(of) == SC_CLASS_FOLD);
-  of.rest_distance = 0.11F;
-  CHECK(classify(of) == SC_CLASS_PENETRATION);
+  for (const Relation near : {SC_RELATION_SIBLINGS, SC_RELATION_NEAR}) {
+    of.relation = near;
+    of.rest_distance = 0.09F;
+    CHECK(classify(of) == SC_CLASS_FOLD);
+    of.rest_distance = 0.11F;
+    CHECK(classify(of) == SC_CLASS_PENETRATION);
+  }
   of.relation = SC_RELATION_JOINED;
   of.rest_distance = 0.3F;
   CHECK(classify(of) == SC_CLASS_FOLD);
   of.depth = 0.08F;
   CHECK(classify(of) == SC_CLASS_DEEP_FOLD);
-  of.is_one_piece = 0;  // skin in cloth
+  of.is_one_piece = 0;  // a sleeve on its arm
+  of.depth = 0.3F;
   CHECK(classify(of) == SC_CLASS_FOLD);
-  of.rest_distance = 0.03F;
-  CHECK(classify(of) == SC_CLASS_SHELL);
   of.relation = SC_RELATION_TWO_BODIES;
   of.rest_distance = std::numeric_limits<float>::infinity();
   CHECK(classify(of) == SC_CLASS_PENETRATION);
+}
+
+TEST_CASE("layers of one place are a fault where they go far beyond what they may") {
+  Measures of = hand_in_thigh();
+  of.is_one_piece = 0;
+  of.rest_distance = 0.02F;
+  CHECK(classify(of) == SC_CLASS_SHELL);
+  of.depth = 0.12F;  // 0.105 is allowed
+  CHECK(classify(of) == SC_CLASS_PENETRATION);
+  of.relation = SC_RELATION_JOINED;
+  CHECK(classify(of) == SC_CLASS_SHELL);
+}
+
+TEST_CASE("fault depth is 0 where there is no fault, and small steps of any measure change it little") {
+  const Rule rule = sc_default_rule();
+  const auto has_fault_depth = [&](const Measures& of) {
+    CHECK(is_fault(classify(of)) == (fault_depth_of(rule, of) > 0));
+    return fault_depth_of(rule, of);
+  };
+  Measures of = hand_in_thigh();
+  CHECK(has_fault_depth(of) == doctest::Approx(0.05F - 0.0033F * 10 / 4).epsilon(0.01));
+  struct Sweep {
+    float Measures::*measure;
+    float from, to;
+  };
+  const Sweep sweeps[] = {{&Measures::depth, 0.001F, 0.2F},           {&Measures::visible, 0.01F, 0.99F},
+                          {&Measures::touching, 0.01F, 0.99F},        {&Measures::swallowed, 0.01F, 0.99F},
+                          {&Measures::rest_distance, 0.001F, 0.199F}, {&Measures::extent, 0.05F, 2}};
+  for (const Relation relation : {SC_RELATION_APART, SC_RELATION_NEAR, SC_RELATION_JOINED, SC_RELATION_TWO_BODIES}) {
+    for (const float swallowed : {0.0F, 0.5F}) {
+      for (const Sweep& sweep : sweeps) {
+        of = hand_in_thigh();
+        of.relation = relation;
+        of.swallowed = swallowed;
+        constexpr int kSteps = 1000;
+        float last = -1;
+        for (int i = 0; i <= kSteps; ++i) {
+          of.*sweep.measure = sweep.from + (sweep.to - sweep.from) * static_cast<float>(i) / kSteps;
+          const float now = has_fault_depth(of);
+          if (last >= 0) CHECK(std::abs(now - last) < 0.001F);
+          last = now;
+        }
+      }
+    }
+  }
 }
 
 TEST_CASE("little that goes in touches up to ten times the depth, unless a depth is given") {
@@ -101,7 +147,7 @@ TEST_CASE("little that goes in touches up to ten times the depth, unless a depth
   CHECK_FALSE(depends_on_extent(limited, of));
   of.depth = 0.034F;
   CHECK(classify(of) == SC_CLASS_PENETRATION);
-  CHECK_FALSE(depends_on_extent(rule, of));
+  CHECK(depends_on_extent(rule, of));  // its fault depth does
   // Files without a unit make giants and dwarfs: their touches are shares of the height.
   CHECK(touch_depth_of(rule, 1, 175) == doctest::Approx(0.0019 * 175));
   CHECK(touch_depth_of(rule, 1, 0.0175) == doctest::Approx(0.0066 * 0.0175));
@@ -114,7 +160,7 @@ TEST_CASE("a rule of another version, or with a limit that is no number, is refu
   rule.version = 1;
   CHECK(check_rule(&rule) == SC_BAD_VALUE);
   rule = sc_default_rule();
-  rule.deep_fold = std::numeric_limits<float>::quiet_NaN();
+  rule.fold_depth = std::numeric_limits<float>::quiet_NaN();
   CHECK(check_rule(&rule) == SC_BAD_VALUE);
   rule = sc_default_rule();
   rule.touch_depth = -1;

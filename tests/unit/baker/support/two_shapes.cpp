@@ -83,6 +83,7 @@ void check_as_bodies(const spherechain::PenetrationJob& one, const spherechain::
     CHECK((kind == SC_CLASS_SHELL || kind == SC_CLASS_TOUCH || kind == SC_CLASS_PENETRATION));
     const spherechain::Measures& in_pose = measured[0].measures;
     expected.kind = kind;
+    expected.fault_depth = measured[0].fault_depth;
     expected.joint = measured[0].joint;
     expected.measures.relation = in_pose.relation;
     expected.measures.is_one_piece = in_pose.is_one_piece;
