@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "baker/bind/bind_bones.h"
 #include "baker/bind/part_names.h"
@@ -12,6 +13,7 @@ namespace spherechain::baker {
 namespace {
 
 constexpr std::size_t kPartsMax = 255;
+constexpr double kWholly = 0.9;  // of a mesh's triangles: then one part moves the mesh
 constexpr std::size_t kNoPart = ~std::size_t{0};
 
 std::string in_words(std::string name) {
@@ -22,17 +24,31 @@ std::string in_words(std::string name) {
 // Collects the parts by name.
 class PartList {
  public:
-  std::size_t add(const std::string& name, Side side, int bone) {
+  std::size_t add(const std::string& name, Side side, int bone, bool is_prop = false) {
     const auto [found, is_new] = index_of_.try_emplace(name, parts_.size());
-    if (is_new) parts_.push_back({name, side, bone, -1});
+    if (is_new) parts_.push_back({name, side, bone, -1, 0, is_prop});
     return found->second;
   }
+  // The part of a mesh that another part moves: a new one on the other, or the one that is there already.
+  std::size_t add_on(const PartName& name, std::size_t mover) {
+    const std::size_t part = add(name.name, name.side, parts_[mover].bone, name.is_prop);
+    if (part + 1 > mover_of_.size()) mover_of_.resize(part + 1, kNoPart);
+    if (part + 1 == parts_.size()) mover_of_[part] = mover;
+    return part;
+  }
+  std::size_t find(const std::string& name) const {
+    const auto found = index_of_.find(name);
+    return found == index_of_.end() ? kNoPart : found->second;
+  }
+  // The part on which a part of a mesh hangs, kNoPart for a part of bones.
+  std::size_t mover_of(std::size_t part) const { return part < mover_of_.size() ? mover_of_[part] : kNoPart; }
   void follow(std::size_t part, int bone) { parts_[part].bone = bone; }
   const std::vector<BodyPart>& parts() const { return parts_; }
 
  private:
   std::vector<BodyPart> parts_;
   std::map<std::string, std::size_t> index_of_;
+  std::vector<std::size_t> mover_of_;
 };
 
 // The part of each bone of the source's rig. A part follows the bone nearest to the root among those whose own role
@@ -50,7 +66,7 @@ std::vector<std::size_t> parts_of_rig(const SourceRig& rig, const Roles& roles, 
     PartName part = names[node];
     if (part.name.empty()) part.name = rig.nodes[node].name;
     if (part.name.empty()) part.name = "bone " + std::to_string(b);
-    const std::size_t index = list.add(part.name, part.side, static_cast<int>(b));
+    const std::size_t index = list.add(part.name, part.side, static_cast<int>(b), part.is_prop);
     const std::tuple key{part.inherited, depth[node]};
     if (index == best.size()) best.push_back(key);
     if (key < best[index]) {
@@ -84,6 +100,43 @@ std::size_t moved_most(const Triangle& corners, const std::vector<VertexWeights>
   }
   const auto less = [](const auto& l, const auto& r) { return l.second < r.second; };
   return std::max_element(sums.begin(), sums.end(), less)->first;
+}
+
+bool is_below(const SourceRig& rig, int bone, int other) {
+  const auto node_of = [&](int b) { return static_cast<int>(rig.bones[static_cast<std::size_t>(b)].node); };
+  int node = node_of(bone);
+  while (node >= 0 && node != node_of(other)) node = rig.nodes[static_cast<std::size_t>(node)].parent;
+  return node >= 0;
+}
+
+// Gives a mesh whose name says what it is, and that one part of the body moves, to a part of its own: a backpack on the
+// chest.
+void name_by_meshes(const Character& character, PartList& list, std::vector<std::size_t>& of_triangle) {
+  std::vector<std::string> names;
+  for (const SourceBuffer& buffer : character.buffers) names.push_back(buffer.name);
+  const std::vector<PartName> parts = name_meshes(names);
+  auto first = of_triangle.begin();
+  for (std::size_t b = 0; b < parts.size(); ++b) {
+    const auto last = first + character.buffers[b].triangle_count;
+    const auto mesh = std::pair(std::exchange(first, last), last);
+    if (parts[b].name.empty()) continue;
+    const std::size_t known = list.find(parts[b].name);
+    std::map<std::size_t, std::ptrdiff_t> counts;
+    std::ptrdiff_t count = 0;
+    for (auto part = mesh.first; part != mesh.second; ++part) {
+      if (*part == known) continue;
+      ++counts[*part];
+      ++count;
+    }
+    for (const auto& [mover, triangles] : counts) {
+      const BodyPart& other = list.parts()[mover];
+      const int bone = other.bone;
+      const bool is_of_body = bone >= 0 && !other.is_prop && mobility_of(other.name) >= 0;
+      if (!is_of_body || static_cast<double>(triangles) < kWholly * static_cast<double>(count)) continue;
+      if (known != kNoPart && !is_below(character.rig, list.parts()[known].bone, bone)) continue;
+      std::replace(mesh.first, mesh.second, mover, list.add_on(parts[b], mover));
+    }
+  }
 }
 
 // The region of each source triangle. A triangle that cleaning dropped takes that of a neighbour.
@@ -129,7 +182,7 @@ BodyParts parts_of_regions(const Character& character, const Regions& regions) {
   return out;
 }
 
-// Sets each part's parent. The bones are the source's nodes, or the joints of the automatic rig.
+// Sets the parent of each part without one. The bones are the source's nodes, or the joints of the automatic rig.
 void find_parents(const SourceRig& rig, const std::vector<Joint>& joints, std::vector<BodyPart>& parts) {
   const bool own_rig = !rig.bones.empty();
   const auto above = [&](int node) {
@@ -141,7 +194,9 @@ void find_parents(const SourceRig& rig, const std::vector<Joint>& joints, std::v
     return part.bone >= 0 && own_rig ? static_cast<int>(rig.bones[static_cast<std::size_t>(part.bone)].node)
                                      : part.bone;
   };
-  for (std::size_t p = 0; p < parts.size(); ++p) part_at[node_of(parts[p])] = static_cast<int>(p);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (parts[p].parent < 0) part_at[node_of(parts[p])] = static_cast<int>(p);
+  }
   part_at.erase(-1);
   // Each node takes the part of the nearest node above that has one.
   std::vector<int> part_above(own_rig ? rig.nodes.size() : joints.size(), -1);
@@ -152,8 +207,8 @@ void find_parents(const SourceRig& rig, const std::vector<Joint>& joints, std::v
     part_above[n] = found != part_at.end() ? found->second : part_above[static_cast<std::size_t>(up)];
   }
   for (BodyPart& part : parts) {
-    const int node = node_of(part);
-    part.parent = node < 0 ? -1 : part_above[static_cast<std::size_t>(node)];
+    const int node = part.parent < 0 ? node_of(part) : -1;
+    if (node >= 0) part.parent = part_above[static_cast<std::size_t>(node)];
   }
 }
 
@@ -191,6 +246,7 @@ BodyParts find_body_parts(const Character& character, const Roles& roles, const 
     }
     of_triangle.push_back(part);
   }
+  if (!character.rig.bones.empty()) name_by_meshes(character, list, of_triangle);
   std::vector<std::size_t> triangles(list.parts().size(), 0);
   for (const std::size_t part : of_triangle) ++triangles[part];
 
@@ -200,6 +256,10 @@ BodyParts find_body_parts(const Character& character, const Roles& roles, const 
   for (const std::size_t i : kept) {
     place[i] = static_cast<std::uint8_t>(out.parts.size());
     out.parts.push_back(list.parts()[i]);
+  }
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const std::size_t mover = list.mover_of(kept[i]);
+    if (mover != kNoPart && std::count(kept.begin(), kept.end(), mover) > 0) out.parts[i].parent = place[mover];
   }
   for (const std::size_t part : of_triangle) out.of_triangle.push_back(place[part]);
   if (std::count(triangles.begin(), triangles.end(), 0U) + std::ssize(kept) < std::ssize(triangles)) {

@@ -11,10 +11,6 @@
 namespace spherechain::baker {
 namespace {
 
-// Garments that people name by themselves. A breast, a pad or a plate belongs to what it hangs on.
-constexpr std::array<std::string_view, 11> kGarments{"skirt", "coat",  "cape",   "cloak",  "sleeve", "hood",
-                                                     "cloth", "armor", "armour", "ribbon", "belt"};
-
 // The parts of a limb by role: of a biped; of a quadruped.
 struct Segment {
   std::string_view role, biped, quadruped;
@@ -93,21 +89,14 @@ bool is_numbered(const RoleLimb& limb) { return std::isdigit(static_cast<unsigne
 
 Side side_of(const RoleLimb& limb) { return limb.left ? Side::kLeft : Side::kRight; }
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
-// A garment with bones of its own.
-PartName garment(const Hint& hint, const std::string& name) {
-  if (hint.word != Word::kCloth) return {};
-  const std::string text = lower(name);
-  for (const std::string_view word : kGarments) {
-    if (text.find(word) == std::string::npos) continue;
-    const Side side = word == "sleeve" ? to_side(hint.side) : Side::kNone;
-    return {with_side(side, word), side};
-  }
-  return {};
+// The part of a thing that is no limb and no trunk. A skirt or hair is one thing on both sides. Ears and wings without
+// a side are several.
+PartName thing_part(const Hint& hint, Side side) {
+  const bool is_pair = hint.thing == "ear" || hint.thing == "wing";
+  if (is_pair && side == Side::kNone) return {std::string(hint.thing) + "s"};
+  const bool is_weapon = hint.word == Word::kAttachment;
+  if (!is_pair && hint.thing != "sleeve" && !is_weapon) side = Side::kNone;
+  return {with_side(side, hint.thing), side, is_weapon};
 }
 
 // Names the nodes of one rig, parents first.
@@ -142,13 +131,30 @@ class Namer {
     const NodeRole& role = role_of(node);
     const std::string& name = rig_.nodes[static_cast<std::size_t>(node)].name;
     const Hint& hint = hints_[static_cast<std::size_t>(node)];
-    if (role.role == "attachment" || hangs_on_attachment(node)) return {name, parent_side(node)};
-    if (hint.word == Word::kArm && lower(name).find("wing") != std::string::npos) {
-      return {with_side(to_side(hint.side), "wing"), to_side(hint.side)};
-    }
+    const bool is_nameless = hint.thing.empty() && !is_of_body(hint.word);
+    // One hand may have several weapons with meshes of their own: the artist's names tell them apart.
+    const bool is_mesh_of_name =
+        rig_.nodes[static_cast<std::size_t>(node)].is_attachment && (is_nameless || hint.word == Word::kAttachment);
+    const bool is_in_slot = hint.thing.empty() && (role.role == "attachment" || hangs_on_slot(node));
+    if (is_mesh_of_name || is_in_slot) return {name, parent_side(node), true};
+    if (!hint.thing.empty() && (hint.thing == "wing" || !is_in_body(role))) return thing(node, hint);
     if (PartName limb = limb_part(node, hint); !limb.name.empty()) return limb;
-    if (PartName trunk = middle(node, hint, name); !trunk.name.empty()) return trunk;
-    return role.role == "other" ? garment(hint, name) : PartName{};
+    return middle(node, hint, name);
+  }
+
+  // A joint of a limb, the trunk, the neck or the head, or above them all.
+  static bool is_in_body(const NodeRole& role) {
+    const std::string& r = role.role;
+    return r != "other" && r != "attachment" && r != "hair" && r != "head_part" && r != "twist" && r != "control";
+  }
+
+  // A thing's further joints need not say its side again. A tail on the head is hair.
+  PartName thing(int node, const Hint& hint) const {
+    if (hint.thing == "tail" && role_of(node).role == "head_part") return {"hair"};
+    const int parent = rig_.nodes[static_cast<std::size_t>(node)].parent;
+    if (hint.side != NamedSide::kNone || parent < 0) return thing_part(hint, to_side(hint.side));
+    if (parts_[static_cast<std::size_t>(parent)].name.ends_with(hint.thing)) return {};
+    return thing_part(hint, hint.word == Word::kAttachment ? parent_side(node) : Side::kNone);
   }
 
   PartName limb_part(int node, const Hint& hint) const {
@@ -188,7 +194,9 @@ class Namer {
       // Rigs disagree about where the hips end and the chest begins: an outspoken name decides.
       if (r == "spine" && (hint.word == Word::kPelvis || hint.word == Word::kChest)) return {middle_part(hint.word)};
     }
-    if (r == "eye" || r == "jaw" || r == "hair" || r == "head_part") return {"head"};
+    if (r == "hair") return {r};
+    if (r == "head_part" && hint.word == Word::kNone) return {};  // of the head, or of a thing on the head
+    if (r == "eye" || r == "jaw" || r == "head_part") return {"head"};
     if (r != "other" || role.limb >= 0) return {middle_part(r)};
     if (is_digit_or_end(hint.word)) return {name, to_side(hint.side)};
     if (repeats_parent(node)) return {};
@@ -202,9 +210,11 @@ class Namer {
     const auto above = static_cast<std::size_t>(parent);
     return !parts_[above].name.empty() && hints_[above].word == hints_[static_cast<std::size_t>(node)].word;
   }
-  bool hangs_on_attachment(int node) const {
+  // A weapon's own joints are the weapon's, whatever hangs in a slot is a thing of its own.
+  bool hangs_on_slot(int node) const {
     const int parent = rig_.nodes[static_cast<std::size_t>(node)].parent;
-    return parent >= 0 && role_of(parent).role == "attachment" && role_of(node).role == "other";
+    return parent >= 0 && role_of(parent).role == "attachment" && role_of(node).role == "other" &&
+           hints_[static_cast<std::size_t>(parent)].thing.empty();
   }
   const NodeRole& role_of(int node) const { return roles_.of_node[static_cast<std::size_t>(node)]; }
   Side parent_side(int node) const {
@@ -222,6 +232,17 @@ class Namer {
 }  // namespace
 
 std::vector<PartName> name_parts(const SourceRig& rig, const Roles& roles) { return Namer(rig, roles).run(); }
+
+std::vector<PartName> name_meshes(const std::vector<std::string>& names) {
+  constexpr std::array<std::string_view, 5> kWorn{"backpack", "bag", "hat", "helmet", "skirt"};
+  std::vector<PartName> out;
+  for (const Hint& hint : read_names(names)) {
+    const bool is_worn = std::find(kWorn.begin(), kWorn.end(), hint.thing) != kWorn.end();
+    const bool is_part = !hint.thing.empty() && (hint.word != Word::kCloth || is_worn);
+    out.push_back(is_part ? thing_part(hint, to_side(hint.side)) : PartName{});
+  }
+  return out;
+}
 
 int mobility_of(const std::string& part) {
   // By how names end; the longer of two ends comes first.

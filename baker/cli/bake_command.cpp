@@ -19,7 +19,6 @@ ExitCode run_bake(const BakeOptions& options) {
   if (options.spheres > 0) settings.fit.spheres = options.spheres;
   if (options.extremities) settings.fit.extremities = true;
   if (!options.body.empty()) settings.segment.body = parse_body(options.body);
-  if (options.attachments) settings.import.attachments = true;
   if (!options.character.empty()) settings.import.character = options.character;
   if (options.size.is_given()) settings.size = options.size;
   if (!options.roles.empty()) settings.roles = parse_role_file(read_file(options.roles), options.roles);

@@ -17,7 +17,7 @@ struct BakeOptions {
   GivenSize size;
   std::string profile = "balanced";
   int spheres = 0;  // 0: no limit
-  bool extremities = false, attachments = false, prop = false, force = false;
+  bool extremities = false, prop = false, force = false;
 };
 ExitCode run_bake(const BakeOptions& options);
 

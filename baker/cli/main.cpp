@@ -164,11 +164,10 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(kSpheresMin, kSpheresMax));
   bake_command->add_flag("--extremities", bake.extremities,
                          "Spheres in head, hands and feet too (profile balanced has them)");
-  bake_command->add_flag("--attachments", bake.attachments, "Keep rigid meshes that hang on joints: weapons, hats");
   add_character(*bake_command, bake.character);
   add_size(*bake_command, bake.size);
   CLI::Option* prop = bake_command->add_flag("--prop", bake.prop, "A rigid thing without a rig: a sword, a chair");
-  for (const char* other : {"--profile", "--roles", "--body", "--extremities", "--attachments", "--edits"}) {
+  for (const char* other : {"--profile", "--roles", "--body", "--extremities", "--edits"}) {
     prop->excludes(bake_command->get_option(other));
   }
   add_output(*bake_command, "--report", bake.report, "JSON report to write");

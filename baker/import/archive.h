@@ -29,7 +29,10 @@ template <typename T, typename Struct>
 concept Is = std::same_as<std::remove_const_t<T>, Struct>;
 
 void members(auto& io, Is<Node> auto& n) {
-  io(n.name, n.humanoid_bone, n.parent, n.in_file, n.local, n.translation, n.rotation, n.scale);
+  io(n.name, n.humanoid_bone, n.is_attachment, n.parent, n.in_file, n.local, n.translation, n.rotation, n.scale);
+}
+void members(auto& io, Is<SourceBuffer> auto& b) {
+  io(b.mesh, b.primitive, b.first_vertex, b.vertex_count, b.hash, b.triangle_count, b.name);
 }
 void members(auto& io, Is<Bone> auto& b) { io(b.node, b.inverse_bind); }
 void members(auto& io, Is<Morph> auto& m) { io(m.name, m.vertices, m.deltas, m.rest_weight); }
@@ -41,7 +44,7 @@ void members(auto& io, Is<SourceRig> auto& r) {
 void members(auto& io, Is<SourceLook> auto& l) { io(l.uvs, l.material_of, l.materials, l.pictures); }
 void members(auto& io, Is<SourceMesh> auto& m) {
   io(m.positions, m.triangles, m.buffers, m.rig, m.look, m.importer, m.meshes, m.points_and_lines_dropped,
-     m.attachments_dropped, m.bones_dropped, m.metres_per_unit, m.up_hint);
+     m.bones_dropped, m.metres_per_unit, m.up_hint);
 }
 
 class ByteWriter {

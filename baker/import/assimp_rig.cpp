@@ -101,6 +101,24 @@ void read_morphs(const MeshInstance& instance, const std::string& file, std::vec
   }
 }
 
+// Marks the nodes that carry a rigid mesh and hang on a bone of another mesh.
+void mark_attachments(const AssimpScene& flat, std::vector<Node>& nodes) {
+  std::vector<bool> is_joint(nodes.size(), false);
+  for (const MeshInstance& instance : flat.instances) {
+    for (unsigned b = 0; b < instance.mesh->mNumBones; ++b) {
+      const auto node = flat.by_name.find(instance.mesh->mBones[b]->mName.C_Str());
+      if (node != flat.by_name.end()) is_joint[node->second] = true;
+    }
+  }
+  for (const MeshInstance& instance : flat.instances) {
+    if (instance.mesh->mNumBones > 0 || is_joint[instance.node]) continue;
+    int above = nodes[instance.node].parent;
+    while (above >= 0 && !is_joint[static_cast<std::size_t>(above)])
+      above = nodes[static_cast<std::size_t>(above)].parent;
+    nodes[instance.node].is_attachment = above >= 0;
+  }
+}
+
 // Whether a skeleton or a clip can move a mesh of the scene.
 bool anything_moves(const AssimpScene& flat, const std::vector<Clip>& clips) {
   std::vector<bool> moves(flat.nodes.size(), false);
@@ -177,6 +195,7 @@ SourceRig read_rig(const aiScene& scene, const AssimpScene& flat, const std::str
   rig.nodes = flat.nodes;
   int number = 0;
   for (Node& node : rig.nodes) node.in_file = number++;
+  mark_attachments(flat, rig.nodes);
   rig.pivots = read_pivots(flat, rig);
   return rig;
 }

@@ -116,7 +116,6 @@ Character build_character(const SourceMesh& source, const std::string& name) {
   report.importer = source.importer;
   report.meshes = source.meshes;
   report.points_and_lines_dropped = source.points_and_lines_dropped;
-  report.attachments_dropped = source.attachments_dropped;
   report.bones_dropped = source.bones_dropped;
 
   // The runtime's buffers are float: what the baker measures must be what the runtime sees.

@@ -316,6 +316,17 @@ json uris_of_images(const json& all) {
   return uris;
 }
 
+// Materials tell what their triangles are by their names.
+json names_of_materials(const json& all) {
+  json out = json::array();
+  if (!all.contains("materials") || !all["materials"].is_array()) return out;
+  for (const json& material : all["materials"]) {
+    const bool is_named = material.is_object() && material.contains("name") && material["name"].is_string();
+    out.push_back({{"name", is_named ? material["name"] : json("")}});
+  }
+  return out;
+}
+
 }  // namespace
 
 json check_gltf_json(std::string_view text, const std::string& file) {
@@ -352,6 +363,7 @@ json check_gltf_json(std::string_view text, const std::string& file) {
   keep_humanoid(all, root);
   for (const std::size_t node : coarse) root["nodes"][node]["extras"]["coarse"] = true;
   root["images"] = uris_of_images(all);
+  root["materials"] = names_of_materials(all);
   return root;
 }
 

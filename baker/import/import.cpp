@@ -77,10 +77,11 @@ void clean(std::string& name) {
   name = std::move(out);
 }
 
-void clean_names(SourceRig& rig) {
-  for (Node& node : rig.nodes) clean(node.name);
-  for (Morph& morph : rig.morphs) clean(morph.name);
-  for (Clip& clip : rig.clips) clean(clip.name);
+void clean_names(SourceMesh& mesh) {
+  for (SourceBuffer& buffer : mesh.buffers) clean(buffer.name);
+  for (Node& node : mesh.rig.nodes) clean(node.name);
+  for (Morph& morph : mesh.rig.morphs) clean(morph.name);
+  for (Clip& clip : mesh.rig.clips) clean(clip.name);
 }
 
 }  // namespace
@@ -137,7 +138,7 @@ SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& o
     for (const std::string& note : received.notes) add_note(note);
     mesh = std::move(received.mesh);
   }
-  clean_names(mesh.rig);
+  clean_names(mesh);
   if (options.prop) make_rigid(mesh);
   return mesh;
 }

@@ -21,15 +21,13 @@ struct ImportReport {
   std::size_t degenerate_dropped = 0;  // triangles without area: two corners at one position, or all on a line
   std::size_t duplicates_dropped = 0;  // triangles with the same three positions as an earlier one
   std::size_t points_and_lines_dropped = 0;
-  std::size_t attachments_dropped = 0;  // rigid meshes that hang on a joint: weapons, hats
-  std::size_t bones_dropped = 0;        // of a prop: what would have moved its parts
+  std::size_t bones_dropped = 0;  // of a prop: what would have moved its parts
 };
 
 struct ImportOptions {
-  bool attachments = false;  // keep them
-  bool prop = false;         // all meshes as one rigid thing: its only bone is kPropBone
-  bool look = false;         // read the base colours, too
-  std::string character;     // of several in a file: what a node of this name, or its skin, has; empty: all
+  bool prop = false;      // all meshes as one rigid thing: its only bone is kPropBone
+  bool look = false;      // read the base colours, too
+  std::string character;  // of several in a file: what a node of this name, or its skin, has; empty: all
 };
 
 // The bone of a prop. Its matrix takes the rest pose to the pose's space.
@@ -39,7 +37,9 @@ inline constexpr const char* kPropBone = "prop";
 struct SourceBuffer {
   Index mesh = 0, primitive = 0;  // the file's numbers (assimp: the scene's mesh, and 0)
   Index first_vertex = 0, vertex_count = 0;
-  std::uint64_t hash = 0;  // sc_hash_positions of its positions in the file, before any node moves them
+  std::uint64_t hash = 0;    // sc_hash_positions of its positions in the file, before any node moves them
+  Index triangle_count = 0;  // triangles of the source, after those of the buffers before
+  std::string name{};        // the names of its node, mesh and material
 };
 
 // A surface that is segmented and fitted: a piece of the skin, or a closed surface made of the skin or around it.
@@ -106,7 +106,6 @@ struct SourceMesh {
   std::string importer;
   std::size_t meshes = 0;
   std::size_t points_and_lines_dropped = 0;
-  std::size_t attachments_dropped = 0;
   std::size_t bones_dropped = 0;
   double metres_per_unit = 1;
   Vec3 up_hint = Vec3::UnitY();

@@ -40,9 +40,11 @@ namespace {
 
 using Files = std::vector<std::string>;
 
-void append(const MeshInstance& instance, const std::string& name, SourceMesh& out) {
+// `names` are those of the mesh's node, of itself and of its material.
+void append(const MeshInstance& instance, const std::string& names, const std::string& name, SourceMesh& out) {
   const aiMesh& mesh = *instance.mesh;
   const Index base = instance.first_vertex;
+  const std::size_t before = out.triangles.size();
   out.buffers.push_back(
       {instance.number, 0, base, mesh.mNumVertices,
        sc_hash_positions(reinterpret_cast<const float*>(mesh.mVertices), mesh.mNumVertices, sizeof(aiVector3D))});
@@ -68,6 +70,8 @@ void append(const MeshInstance& instance, const std::string& name, SourceMesh& o
     if (flip) std::swap(t[1], t[2]);
     out.triangles.push_back(t);
   }
+  out.buffers.back().triangle_count = static_cast<Index>(out.triangles.size() - before);
+  out.buffers.back().name = names;
   ++out.meshes;
 }
 
@@ -277,7 +281,11 @@ void note_lost_files(const ReadFile& read, const std::filesystem::path& folder) 
 SourceMesh source_of(const aiScene& scene, const AssimpScene& flat, const std::string& name) {
   SourceMesh out;
   out.importer = "assimp";
-  for (const MeshInstance& instance : flat.instances) append(instance, name, out);
+  for (const MeshInstance& instance : flat.instances) {
+    const aiString material = scene.mMaterials[instance.mesh->mMaterialIndex]->GetName();
+    append(instance, flat.nodes[instance.node].name + " " + instance.mesh->mName.C_Str() + " " + material.C_Str(), name,
+           out);
+  }
   out.rig = read_rig(scene, flat, name);
   // Formats without units are taken as metres. FBX says its own, in centimetres.
   double centimetres = 0;

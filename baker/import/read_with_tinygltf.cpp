@@ -98,10 +98,9 @@ struct Carrier {
 
 class GltfReader {
  public:
-  GltfReader(const GltfFile& file, const ImportOptions& options)
+  GltfReader(const GltfFile& file, const std::string& character)
       : file_(file),
-        options_(options),
-        nodes_(with_chosen_meshes(file, read_nodes(file), options.character)),
+        nodes_(with_chosen_meshes(file, read_nodes(file), character)),
         skeleton_(file, nodes_, skins_of_scene(file, nodes_)),
         morphs_of_node_(file.model.nodes.size()) {}
 
@@ -140,16 +139,13 @@ class GltfReader {
   void add_mesh(std::size_t n) {
     const tinygltf::Node& node = file_.model.nodes[n];
     const tinygltf::Mesh& mesh = file_.model.meshes[at(node.mesh)];
-    const bool on_joint = skeleton_.has_skins() && skeleton_.joint_above(nodes_.of_file[n]) != kNoIndex;
     std::map<std::pair<std::map<std::string, int>, std::vector<std::map<std::string, int>>>, SourceBuffer> shared;
-    bool kept = false, dropped = false;
+    bool kept = false;
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
       const tinygltf::Primitive& primitive = mesh.primitives[p];
       const bool skinned = node.skin >= 0 && is_skinned(primitive);
       if (!has_triangles(primitive)) {
         out_.points_and_lines_dropped += count_points_and_lines(file_, primitive);
-      } else if (!skinned && on_joint && !options_.attachments && !options_.prop) {
-        dropped = true;
       } else if (primitive.attributes.count("POSITION") > 0) {
         kept = true;
         where_ = primitive_name(node.mesh, p);
@@ -160,11 +156,11 @@ class GltfReader {
         out_.buffers.push_back(known->second);
         out_.buffers.back().mesh = static_cast<Index>(node.mesh);
         out_.buffers.back().primitive = static_cast<Index>(p);
-        add_triangles(primitive, carrier, known->second);
+        out_.buffers.back().name = node.name + " " + mesh.name + " " + material_name(primitive);
+        out_.buffers.back().triangle_count = add_triangles(primitive, carrier, known->second);
       }
     }
     out_.meshes += kept ? 1 : 0;
-    out_.attachments_dropped += dropped ? 1 : 0;
   }
 
   Carrier carrier_of(std::size_t n, bool skinned) {
@@ -172,7 +168,9 @@ class GltfReader {
       const GltfSkin& skin = skeleton_.skin(file_.model.nodes[n].skin);
       return {skin.to_rest, &skin, {}};
     }
-    const GltfSkeleton::Rigid rigid = skeleton_.rigid(nodes_.of_file[n]);
+    const Index own = nodes_.of_file[n], joint = skeleton_.has_skins() ? skeleton_.joint_above(own) : kNoIndex;
+    nodes_.nodes[own].is_attachment = joint != kNoIndex && joint != own;
+    const GltfSkeleton::Rigid rigid = skeleton_.rigid(own);
     return {rigid.to_rest, nullptr, rigid.bone};
   }
 
@@ -208,7 +206,13 @@ class GltfReader {
     return part;
   }
 
-  void add_triangles(const tinygltf::Primitive& primitive, const Carrier& carrier, const SourceBuffer& part) {
+  std::string material_name(const tinygltf::Primitive& primitive) const {
+    const std::vector<tinygltf::Material>& all = file_.model.materials;
+    return primitive.material >= 0 && at(primitive.material) < all.size() ? all[at(primitive.material)].name : "";
+  }
+
+  // Returns how many there are.
+  Index add_triangles(const tinygltf::Primitive& primitive, const Carrier& carrier, const SourceBuffer& part) {
     const std::vector<Triangle> triangles = read_triangles(file_, primitive, part.vertex_count, where_);
     spend(triangles.size());
     triangles_read_.emplace_back(&primitive, triangles.size());
@@ -217,6 +221,7 @@ class GltfReader {
       if (mirrored) std::swap(t[1], t[2]);
       out_.triangles.push_back({part.first_vertex + t[0], part.first_vertex + t[1], part.first_vertex + t[2]});
     }
+    return static_cast<Index>(triangles.size());
   }
 
   // A node's morphs move the vertices of all its primitives.
@@ -261,7 +266,6 @@ class GltfReader {
   }
 
   const GltfFile& file_;
-  const ImportOptions& options_;
   GltfNodes nodes_;
   GltfSkeleton skeleton_;
   std::vector<GltfMorphs> morphs_of_node_;  // by the file's index
@@ -276,7 +280,7 @@ class GltfReader {
 
 SourceMesh read_with_tinygltf(const std::filesystem::path& path, const ImportOptions& options) {
   const GltfFile file = open_gltf(path);
-  GltfReader reader(file, options);
+  GltfReader reader(file, options.character);
   SourceMesh out = reader.read();
   note_lost_pictures(file, path.parent_path());
   if (options.look) out.look = reader.read_look(path);

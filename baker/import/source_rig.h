@@ -25,6 +25,7 @@ struct VertexWeights {
 struct Node {
   std::string name;
   std::string humanoid_bone{};  // what a VRM avatar says it is, such as "leftUpperArm"; empty where it says nothing
+  bool is_attachment = false;   // carries a rigid mesh, and hangs on a joint: a weapon, a hat
   int parent = -1;              // comes before its children
   int in_file = -1;             // its number in the file, or in what read_as_glb() makes of it
   Affine local = Affine::Identity();

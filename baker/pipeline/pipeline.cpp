@@ -9,6 +9,7 @@
 #include <chrono>
 
 #include "baker/calibrate/calibrate.h"
+#include "baker/edits/held_props.h"
 #include "baker/edits/hidden_contacts.h"
 #include "baker/edits/ignore_parts.h"
 #include "baker/import/notes.h"
@@ -97,22 +98,27 @@ void run_after_fit(Bake& out, const Progress& progress) {
   stage(out, progress, "write", [&] { out.asset = write(); });
 }
 
-// Changes the spheres as a person asked, and binds them again.
-void edit(Bake& out) {
+// Lets parts that a hand holds ignore it (`held`), changes the spheres as a person asked, and binds them again.
+void edit(Bake& out, const PartPairs& held) {
   const Edits& edits = out.settings.edits;
   std::vector<AppliedEdit> applied;
-  out.spheres = add_part_spheres(out.character, out.regions, out.spheres, out.body_parts, edits.ignored_parts);
+  PartPairs ignored = held;
+  ignored.insert(ignored.end(), edits.ignored_parts.begin(), edits.ignored_parts.end());
+  out.spheres = add_part_spheres(out.character, out.regions, out.spheres, out.body_parts, ignored);
   out.spheres = edit_spheres(out.character, out.regions, out.spheres, edits.spheres, out.edits_done, applied);
   Attempt<Binding> binding = bind_spheres(out.character, out.regions, out.spheres, out.settings.bind);
   if (!binding) {
     throw Error(ExitCode::kSegmentation, out.character.file + ": with its edits: " + binding.reason().what);
   }
-  out.edits_done.notes = hidden_contacts(out.character, out.body_parts, out.binding, *binding);
+  if (!edits.empty()) out.edits_done.notes = hidden_contacts(out.character, out.body_parts, out.binding, *binding);
   out.binding = std::move(*binding);
   check_places(out.regions, out.spheres, out.binding, edits.spheres, applied, out.edits_done);
   out.quality = measure_fit(out.character, out.regions, out.binding);
-  ignore_parts(out.character, out.regions, out.spheres, out.body_parts, edits.ignored_parts,
-               out.settings.bind.neighbour_gap * out.regions.frame.height, out.binding, out.edits_done);
+  const double gap = out.settings.bind.neighbour_gap * out.regions.frame.height;
+  EditsDone not_asked_for;
+  ignore_parts(out.character, out.regions, out.spheres, out.body_parts, held, gap, out.binding, not_asked_for);
+  ignore_parts(out.character, out.regions, out.spheres, out.body_parts, edits.ignored_parts, gap, out.binding,
+               out.edits_done);
 }
 
 Attempt<Spheres> fit_regions(const Character& character, const Regions& regions, const FitSettings& settings) {
@@ -373,7 +379,9 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings, cons
     out.times.insert(out.times.end() - 1, {"wrap", out.closing.seconds});
   }
   run_rig(out, progress);
-  if (!settings.edits.empty()) stage(out, progress, "edits", [&] { edit(out); });
+  const bool is_paper = settings.bind.rule == RefitRule::kPaper;
+  const PartPairs held = is_paper ? PartPairs{} : held_props(out.body_parts);
+  if (!settings.edits.empty() || !held.empty()) stage(out, progress, "edits", [&] { edit(out, held); });
   run_after_fit(out, progress);
   return out;
 }

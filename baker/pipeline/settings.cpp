@@ -137,7 +137,6 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   }
   const json object = parse(text, file);
   Reader reader(object, file);
-  reader.boolean("attachments", settings.import.attachments);
   reader.boolean("prop", settings.import.prop);
   reader.word("character", settings.import.character);
   reader.number("scale", settings.size.scale, kSizeFactorMin, kSizeFactorMax);
@@ -205,7 +204,6 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
 
 std::string to_json(const BakeSettings& settings) {
   json out;
-  out["attachments"] = settings.import.attachments;
   if (settings.import.prop) out["prop"] = true;
   if (!settings.import.character.empty()) out["character"] = settings.import.character;
   if (settings.size.scale) out["scale"] = *settings.size.scale;

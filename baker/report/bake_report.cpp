@@ -83,7 +83,6 @@ ordered_json import_section(const Bake& bake) {
           {"degenerate_dropped", report.degenerate_dropped},
           {"duplicates_dropped", report.duplicates_dropped},
           {"points_and_lines_dropped", report.points_and_lines_dropped},
-          {"attachments_dropped", report.attachments_dropped},
           {"bones_dropped", report.bones_dropped},
           {"metres_per_unit", bake.character.metres_per_unit},
           {"up_axis_of_file", to_json(bake.character.up_hint)}};
@@ -355,10 +354,6 @@ std::string bake_report_text(const Bake& bake) {
                                 is_tall(bake) ? "tall" : "long", bake.regions.facing);
   if (const std::string note = unit_note(bake); !note.empty())
     out += "note: " + bake.character.file + ": " + note + "\n";
-  if (const std::size_t dropped = bake.character.report.attachments_dropped; dropped > 0) {
-    out += fmt::format("left out: {} on joints, such as weapons and hats (--attachments keeps them)\n",
-                       dropped == 1 ? "1 rigid mesh" : fmt::format("{} rigid meshes", dropped));
-  }
   if (const std::size_t dropped = bake.character.report.bones_dropped; dropped > 0) {
     out += fmt::format("left out: {} and what moves them: a prop is rigid, as at rest\n",
                        dropped == 1 ? "1 bone" : fmt::format("{} bones", dropped));

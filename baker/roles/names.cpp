@@ -87,25 +87,25 @@ Tokens split(std::string_view name) {
   return tokens;
 }
 
-// "leftarm", "rfoot", "armleft": the side is taken off where a word of a limb remains.
+// "leftarm", "rfoot", "armleft": the side is taken off where a word of a limb remains, a long one from "leftear", too.
 void split_off_side(std::u32string& token, NamedSide& side) {
   if (word_of(token, true) != Word::kNone) return;
-  const auto take = [&](const std::u32string& word, bool ahead, NamedSide which) {
+  const auto take = [&](const std::u32string& word, bool ahead, NamedSide which, bool is_long) {
     if (token.size() <= word.size() || !(ahead ? token.starts_with(word) : token.ends_with(word))) return false;
     const std::u32string rest = token.substr(ahead ? word.size() : 0, token.size() - word.size());
-    if (family_of(word_of(rest, true)) == Family::kNone) return false;
+    if (family_of(word_of(rest, true)) == Family::kNone && (!is_long || thing_of(rest).empty())) return false;
     side = which;
     token = rest;
     return true;
   };
   for (const std::u32string& word : glued_sides()) {
-    if (take(word, true, side_of(word)) || take(word, false, side_of(word))) return;
+    if (take(word, true, side_of(word), true) || take(word, false, side_of(word), true)) return;
   }
   for (const auto& [word, which] : {std::pair{U"l", NamedSide::kLeft},
                                     {U"r", NamedSide::kRight},
                                     {U"zuo", NamedSide::kLeft},
                                     {U"you", NamedSide::kRight}}) {
-    if (take(word, true, which)) return;
+    if (take(word, true, which, false)) return;
   }
 }
 
@@ -165,6 +165,7 @@ Hint read(const Tokens& tokens, const AllNames& all) {
   }
   Section section = Section::kNone;
   bool of_foot = false;
+  Word thing_word = Word::kNone;
   const bool has_side = hint.side != NamedSide::kNone;
   // Neighbours join first ("upper" "arm"), so that the longer word wins.
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -178,6 +179,11 @@ Hint read(const Tokens& tokens, const AllNames& all) {
         continue;
       }
       of_foot = of_foot || word == Word::kFoot;
+      if (const std::string_view thing = thing_of(joined);
+          !thing.empty() && precedence(word) >= precedence(thing_word)) {
+        hint.thing = thing;
+        thing_word = word;
+      }
       if (precedence(word) >= precedence(hint.word)) {
         hint.word = word;
         hint.reason = fmt::format("its name says {}", to_utf8(joined));
@@ -202,6 +208,11 @@ Family family_of(Word word) {
   if (word >= Word::kClavicle && word <= Word::kFinger) return Family::kArm;
   if (word >= Word::kHipGirdle && word <= Word::kToe) return Family::kLeg;
   return Family::kNone;
+}
+
+bool is_of_body(Word word) {
+  return word != Word::kNone && word != Word::kRoot && word != Word::kAttachment && word != Word::kCloth &&
+         word != Word::kControl;
 }
 
 std::vector<Hint> read_names(const std::vector<std::string>& names) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace spherechain::baker {
@@ -49,7 +50,8 @@ struct Hint {
   NamedSide side = NamedSide::kNone;
   Place place = Place::kNone;
   bool twist = false;
-  bool given = false;  // by a role file
+  bool given = false;      // by a role file
+  std::string_view thing;  // what is no limb and no trunk, by its everyday name: "ear", "sword" (words.h)
   std::string reason;
 };
 
@@ -58,6 +60,9 @@ std::vector<Hint> read_names(const std::vector<std::string>& names);
 
 // The hint for a role of a role file. Its word is kNone and its reason empty where there is no such role.
 Hint hint_of_role(const std::string& role);
+
+// Whether a word means a part of the body, and no thing that is put on or taken into a hand.
+bool is_of_body(Word word);
 
 enum class Family { kNone, kArm, kLeg };
 Family family_of(Word word);

@@ -39,12 +39,17 @@ const char* plain_role(Word word) {
   }
 }
 
-// A humanoid mapping in the file goes before the node's name.
+// A humanoid mapping in the file goes before the node's name. A rigid mesh on a joint is an attachment, but where its
+// name says that it is of the body: a head, hair.
 std::vector<Hint> hints_from_names(const SourceRig& rig) {
   std::vector<std::string> names;
   for (const Node& node : rig.nodes) names.push_back(node.humanoid_bone.empty() ? node.name : node.humanoid_bone);
   std::vector<Hint> hints = read_names(names);
   for (std::size_t n = 0; n < hints.size(); ++n) {
+    if (rig.nodes[n].is_attachment && !is_of_body(hints[n].word)) {
+      hints[n].word = Word::kAttachment;
+      hints[n].reason = "a rigid mesh on a joint";
+    }
     const std::string& bone = rig.nodes[n].humanoid_bone;
     if (!bone.empty() && hints[n].word != Word::kNone) hints[n].reason = "the avatar's humanoid says " + bone;
   }
@@ -168,15 +173,17 @@ struct RoleWriter {
     const RoleLimb& limb = roles.limbs[index];
     const int hand = limb.extremity < 0 ? -1 : limb.nodes[limb.extremity];
     const std::vector<int> in_hand = s.inherited([&](int n) { return n == hand ? 1 : -1; });
+    std::vector<bool> is_in_prop(hints.size(), false);
     for (int n = 0; n < s.count(); ++n) {
       const int parent = s.parent[n];
+      is_in_prop[n] = hints[n].word == Word::kAttachment || (parent >= 0 && is_in_prop[parent]);
       if (body.path_of[n] != path || !roles.of_node[n].role.empty() || s.joint[n] >= 0) continue;
       const bool in_girdle = roles.of_node[parent].limb < 0;
       std::string role = plain_role(hints[n].word);
       std::string reason = because(n, "hangs on " + s.names[parent]);
       if (role == "other" && !s.alive[n] && hints[n].word == Word::kNone)
         reason = "moves no skin";
-      else if (role == "other" && hints[n].word != Word::kCloth && !in_girdle)
+      else if (role == "other" && hints[n].word != Word::kCloth && !in_girdle && !is_in_prop[n])
         role = in_hand[n] > 0 ? digit : "twist";
       set(n, role, in_girdle ? -1 : index, reason);
     }

@@ -10,12 +10,13 @@
 namespace spherechain::baker {
 namespace {
 
-// Words as rigs write them: English; German, French, Spanish, Italian, Portuguese, Polish; Russian, in its own letters
-// and in Latin ones; Japanese (MikuMikuDance's names among them), Chinese, simplified and traditional, and its pinyin;
-// Korean.
+// Words as rigs write them, and the thing they mean where people name it by itself: English; German, French, Spanish,
+// Italian, Portuguese, Polish; Russian, in its own letters and in Latin ones; Japanese (MikuMikuDance's names among
+// them), Chinese, simplified and traditional, and its pinyin; Korean.
 struct Line {
   Word word;
   const char* words;
+  std::string_view thing{};
 };
 constexpr Line kLines[]{
     {Word::kRoot,
@@ -53,7 +54,8 @@ constexpr Line kLines[]{
     {Word::kShoulder,
      "shoulder shldr schulter epaule hombro spalla ombro bark плечо plecho 肩 かた ショルダー 肩膀 肩部 "
      "jianbu jianbang 어깨"},
-    {Word::kArm, "arm wing bras brazo braccio braco ramie рука ruka 腕 うで アーム 手臂 臂 胳膊 shoubi gebo 팔"},
+    {Word::kArm, "wing wings 翼 날개", "wing"},
+    {Word::kArm, "arm bras brazo braccio braco ramie рука ruka 腕 うで アーム 手臂 臂 胳膊 shoubi gebo 팔"},
     {Word::kUpperArm,
      "upperarm uparm armupper bicep biceps humerus oberarm hautbras hautdubras avantbrashaut "
      "bicipite плечеваякость верхруки verhruki 上腕 二の腕 じょうわん 上臂 大臂 shangbi dabi 위팔 윗팔 "
@@ -102,20 +104,52 @@ constexpr Line kLines[]{
      "носок nosok つま先 爪先 つまさき 足先 足指 トゥ tsumasaki 脚趾 腳趾 脚尖 腳尖 趾 趾骨 jiaozhi jiaojian "
      "발가락 발끝"},
 
-    {Word::kTail, "tail schwanz queue cola coda rabo cauda ogon хвост hvost khvost 尾 尻尾 しっぽ 尾巴 weiba 꼬리"},
-    {Word::kEye, "eye eyeball auge oeil yeux ojo occhio olho oko глаз glaz 目 両目 眼 眼睛 め 눈"},
+    {Word::kTail,
+     "tail tailbase tailroot tailtip tailend tailbone schwanz queue cola coda rabo cauda ogon хвост hvost khvost 尾 "
+     "尻尾 しっぽ 尾巴 weiba 꼬리",
+     "tail"},
+    {Word::kEye, "eye eyes eyeball eyeballs auge oeil yeux ojo occhio olho oko глаз glaz 目 両目 眼 眼睛 め 눈"},
     {Word::kJaw, "jaw chin kiefer machoire mandibula mascella mandibola szczeka челюсть 顎 あご 下巴 下颌 下頜 턱"},
     {Word::kHair,
-     "hair ponytail bangs braid haar haare cheveux pelo capelli cabelo wlosy волосы 髪 前髪 後髪 横髪 かみ "
-     "头发 頭髮 머리카락"},
+     "hair hairs ponytail pigtail pigtails twintail bang bangs braid braids haar haare zopf cheveux pelo capelli "
+     "cabelo "
+     "wlosy волосы 髪 前髪 後髪 横髪 かみ 头发 頭髮 머리카락",
+     "hair"},
     {Word::kHeadPart,
-     "face tongue teeth lip lips mouth nose ear brow eyebrow eyelid lid cheek forehead horn antenna "
-     "mandible 舌 歯 口 鼻 耳 眉 眉毛 嘴 귀 코 입"},
+     "face tongue teeth lip lips mouth nose brow brows eyebrow eyebrows eyelid lid eyelash eyelashes cheek forehead "
+     "horn antenna "
+     "mandible 舌 歯 口 鼻 眉 眉毛 嘴 코 입"},
+    {Word::kHeadPart,
+     "ear ears ohr ohren oreille oreilles oreja orejas orecchio orecchie orelha orelhas ucho uszy ухо уши 耳 耳朵 귀",
+     "ear"},
 
-    {Word::kAttachment, "handslot slot socket weapon prop attach attachment mount grip holder camera"},
-    {Word::kCloth,
-     "sec skirt coat cloth cape cloak sleeve hood breast boob bust pec ribbon belt pad armor armour "
-     "plate スカート 袖 乳 乳房"},
+    {Word::kAttachment, "handslot slot socket prop attach attachment mount grip holder camera"},
+    {Word::kAttachment, "weapon weapons waffe оружие 武器 무기", "weapon"},
+    {Word::kAttachment, "sword katana sabre saber schwert espada spada меч 剣 剑", "sword"},
+    {Word::kAttachment, "axe axt", "axe"},
+    {Word::kAttachment, "dagger knife dolch messer", "knife"},
+    {Word::kAttachment, "spear lance speer", "spear"},
+    {Word::kAttachment, "hammer mace", "hammer"},
+    {Word::kAttachment, "staff wand", "staff"},
+    {Word::kAttachment, "shield schild bouclier escudo scudo щит 盾", "shield"},
+    {Word::kAttachment, "gun pistol rifle shotgun revolver gewehr pistole", "gun"},
+    {Word::kCloth, "sec breast boob bust pec pad plate 乳 乳房"},
+    {Word::kCloth, "backpack rucksack knapsack mochila рюкзак リュック 背包 배낭", "backpack"},
+    {Word::kCloth, "bag pouch satchel", "bag"},
+    {Word::kCloth, "skirt jupe falda юбка スカート 裙 裙子 치마", "skirt"},
+    {Word::kCloth, "dress kleid", "dress"},
+    {Word::kCloth, "coat coattail coattails mantel", "coat"},
+    {Word::kCloth, "cape", "cape"},
+    {Word::kCloth, "cloak マント", "cloak"},
+    {Word::kCloth, "sleeve 袖", "sleeve"},
+    {Word::kCloth, "hood", "hood"},
+    {Word::kCloth, "hat", "hat"},
+    {Word::kCloth, "helmet helm", "helmet"},
+    {Word::kCloth, "scarf", "scarf"},
+    {Word::kCloth, "ribbon リボン", "ribbon"},
+    {Word::kCloth, "belt", "belt"},
+    {Word::kCloth, "cloth", "cloth"},
+    {Word::kCloth, "armor armour", "armor"},
     {Word::kControl, "ik fk ctrl control ctl pole target mch wgt vis tweak footsteps"}};
 
 // Short words that speak of the body only beside a side.
@@ -135,14 +169,16 @@ void add(std::unordered_map<std::u32string, Value>& out, std::string_view text, 
   }
 }
 
+using Lexicon = std::unordered_map<std::u32string, const Line*>;
+
 template <std::size_t N>
-std::unordered_map<std::u32string, Word> lexicon_of(const Line (&lines)[N]) {
-  std::unordered_map<std::u32string, Word> out;
-  for (const Line& line : lines) add<Word>(out, line.words, line.word);
+Lexicon lexicon_of(const Line (&lines)[N]) {
+  Lexicon out;
+  for (const Line& line : lines) add<const Line*>(out, line.words, &line);
   return out;
 }
 
-const std::unordered_map<std::u32string, Word>& lexicon() {
+const Lexicon& lexicon() {
   static const auto words = lexicon_of(kLines);
   return words;
 }
@@ -170,9 +206,14 @@ const Sides& sides() {
 
 Word word_of(const std::u32string& word, bool beside_side) {
   static const auto short_words = lexicon_of(kBesideSide);
-  if (const auto found = lexicon().find(word); found != lexicon().end()) return found->second;
+  if (const auto found = lexicon().find(word); found != lexicon().end()) return found->second->word;
   const auto found = short_words.find(word);
-  return beside_side && found != short_words.end() ? found->second : Word::kNone;
+  return beside_side && found != short_words.end() ? found->second->word : Word::kNone;
+}
+
+std::string_view thing_of(const std::u32string& word) {
+  const auto found = lexicon().find(word);
+  return found == lexicon().end() ? std::string_view() : found->second->thing;
 }
 
 NamedSide side_of(const std::u32string& word) {

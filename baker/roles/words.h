@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "baker/roles/names.h"
@@ -9,6 +10,10 @@
 namespace spherechain::baker {
 
 // All words are folded (letters.h), parts joined: "upperarm".
+
+// The everyday name of the thing that a word means, in English and singular: "ear", "hair", "sword". Empty where the
+// word means a part of the body, or nothing.
+std::string_view thing_of(const std::u32string& word);
 
 // The meaning of a word, kNone if it is unknown. A few short words count only beside a side: "main" is French for a
 // hand.

@@ -90,7 +90,8 @@ double stature(const Character& character, const Roles& roles) {
   const std::vector<Node>& rig = character.rig.nodes;
   std::vector<bool> in_head;
   for (std::size_t n = 0; n < rig.size(); ++n) {
-    const bool below = rig[n].parent >= 0 && in_head[static_cast<std::size_t>(rig[n].parent)];
+    const bool below =
+        rig[n].parent >= 0 && in_head[static_cast<std::size_t>(rig[n].parent)] && roles.of_node[n].role != "attachment";
     in_head.push_back(below || roles.of_node[n].role == "head");
   }
   const auto is_head = [&](std::size_t n) { return in_head[n]; };

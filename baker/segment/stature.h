@@ -12,8 +12,8 @@ namespace spherechain::baker {
 Vec3 way_up(const Character& character, const Roles& roles);
 
 // How far a biped's crown is above its soles as it stands: from the lowest skin of its legs to the highest skin of its
-// head and all that hangs on it (hair, ears, hats). Other skin does not count: arms and weapons held up, wings, a cape
-// on the ground. Where no skin is a leg's or the head's, all skin counts.
+// head and all of the skin that hangs on it (hair, ears). Other skin does not count: arms and weapons held up, wings, a
+// cape on the ground, a rigid hat. Where no skin is a leg's or the head's, all skin counts.
 double stature(const Character& character, const Roles& roles);
 
 }  // namespace spherechain::baker

@@ -12,6 +12,7 @@
 
 #include "baked_human.h"
 #include "baker/bind/part_names.h"
+#include "baker/edits/held_props.h"
 #include "role_cases.h"
 
 using namespace spherechain::baker;
@@ -182,13 +183,15 @@ Hips = pelvis
   CHECK(parts.at("Spine1_twist1") == "chest");
 }
 
-TEST_CASE("hair is the head's, garments and attachments are parts of their own") {
+TEST_CASE("tail, ears, hair, wings, bags, garments and weapons are parts of their own") {
   const auto parts = part_names_by_node(named_rig(R"(
 Root = !root
   J_Bip_C_Hips = pelvis
     J_Sec_L_SkirtBack0_01 = other
       J_Sec_L_SkirtBack1_01 = other
     J_Sec_R_SkirtBack0_01 = other
+    tail_02 = tail_1
+      TailTip = tail_2
     J_Bip_C_Spine = spine
       J_Bip_C_Chest = spine
         J_Bip_C_UpperChest = chest
@@ -197,7 +200,19 @@ Root = !root
               J_Adj_L_FaceEye = eye
               J_Sec_Hair1_01 = hair
                 J_Sec_Hair2_01 = hair
+                  Bone.014 = head_part
+              SideTail_L = head_part
+              LeftEar = head_part
+                Ear2 = head_part
+              rightear = head_part
+              antenna = head_part
           J_Sec_L_Bust1 = other
+          back_pack.001 = other
+            strap = other
+          Scabbard_Sword = attachment
+          Feather_Wing_1.L = other
+            Feather_Wing_2 = other
+          wing_top = other
           J_Bip_L_Shoulder = left_clavicle
             J_Bip_L_UpperArm = left_shoulder
               J_Sec_L_TopsUpperArmInside_01 = other
@@ -205,6 +220,9 @@ Root = !root
                 J_Bip_L_Hand = left_wrist
                   J_Bip_L_Middle1 = left_finger
                   handslot_L = attachment
+                    Club = other
+                  Weapon = attachment
+                    Chain = other
           J_Bip_R_Shoulder = right_clavicle
             J_Bip_R_UpperArm = right_shoulder
               J_Bip_R_LowerArm = right_elbow
@@ -221,12 +239,104 @@ Root = !root
 )"));
   CHECK(parts.at("J_Sec_L_SkirtBack1_01") == "skirt");
   CHECK(parts.at("J_Sec_R_SkirtBack0_01") == "skirt");
-  CHECK(parts.at("J_Sec_Hair2_01") == "head");
+  CHECK(parts.at("tail_02") == "tail");
+  CHECK(parts.at("TailTip") == "tail");
+  for (const char* hair : {"J_Sec_Hair2_01", "Bone.014", "SideTail_L"}) CHECK(parts.at(hair) == "hair");
+  CHECK(parts.at("LeftEar") == "left ear");
+  CHECK(parts.at("Ear2") == "left ear");
+  CHECK(parts.at("rightear") == "right ear");
+  CHECK(parts.at("antenna") == "head");
+  CHECK(parts.at("back_pack.001") == "backpack");
+  CHECK(parts.at("strap") == "backpack");
+  CHECK(parts.at("Scabbard_Sword") == "sword");
+  CHECK(parts.at("Feather_Wing_2") == "left wing");
+  CHECK(parts.at("wing_top") == "wings");
+  CHECK(parts.at("Weapon") == "left weapon");
+  CHECK(parts.at("Chain") == "left weapon");
+  CHECK(parts.at("Club") == "Club");
   CHECK(parts.at("J_Adj_L_FaceEye") == "head");
   CHECK(parts.at("J_Sec_L_Bust1") == "chest");
   CHECK(parts.at("J_Bip_C_Chest") == "chest");
   CHECK(parts.at("J_Sec_L_TopsUpperArmInside_01") == "left upper arm");
   CHECK(parts.at("handslot_L") == "handslot_L");
+}
+
+// A rig of two arms and the triangle of each bone.
+Character armed(std::vector<Node>& extra) {
+  NamedRig rig = named_rig(kMixamo);
+  std::map<std::string, int> node_of;
+  for (std::size_t n = 0; n < rig.rig.nodes.size(); ++n) node_of[rig.rig.nodes[n].name] = static_cast<int>(n);
+  for (Node& node : extra) {
+    node.parent = node_of.at(node.humanoid_bone);
+    node.humanoid_bone.clear();
+    node.is_attachment = true;
+    rig.rig.bones.push_back({static_cast<Index>(rig.rig.nodes.size()), Affine::Identity()});
+    rig.rig.nodes.push_back(node);
+  }
+  return one_triangle_a_bone(rig);
+}
+
+TEST_CASE("rigid meshes on joints are parts, and what a hand holds never meets the hand or what else it holds") {
+  std::vector<Node> meshes{{"1H_Axe", "mixamorig:RightHand"},
+                           {"Mug", "mixamorig:RightHand"},
+                           {"Shield", "mixamorig:LeftForeArm"},
+                           {"Pete_Hat", "mixamorig:Head"},
+                           {"Pete_Hair", "mixamorig:Head"}};
+  const Character character = armed(meshes);
+  const Roles roles = find_roles(character.rig, std::vector<Vec3>(character.source_positions));
+  const BodyParts parts = find_body_parts(character, roles, {}, {}, {});
+  check_whole(character, parts);
+  const auto held_by = [&](const char* name) {
+    return parts.parts[static_cast<std::size_t>(part_called(parts, name).parent)].name;
+  };
+  CHECK(held_by("1H_Axe") == "right hand");
+  CHECK(held_by("Mug") == "right hand");
+  CHECK(held_by("Shield") == "left forearm");
+  CHECK(held_by("hat") == "head");
+  CHECK(held_by("hair") == "head");
+  PartPairs held = held_props(parts);
+  std::sort(held.begin(), held.end());
+  CHECK(held == PartPairs{{"1H_Axe", "Mug"},
+                          {"1H_Axe", "right forearm"},
+                          {"1H_Axe", "right hand"},
+                          {"Mug", "right forearm"},
+                          {"Mug", "right hand"},
+                          {"Shield", "left forearm"},
+                          {"Shield", "left hand"}});
+}
+
+TEST_CASE(
+    "a mesh of one part's is named by its node, itself or its material; clothes around several parts stay theirs") {
+  Character character = one_triangle_a_bone(named_rig(kMixamo));
+  const Roles roles = roles_of(named_rig(kMixamo));
+  const std::size_t before = find_body_parts(character, roles, {}, {}, {}).parts.size();
+  const auto triangle_of = [&](const char* name) {
+    for (Index b = 0; b < character.rig.bones.size(); ++b) {
+      if (character.rig.nodes[character.rig.bones[b].node].name == name) return character.source_triangles[b];
+    }
+    FAIL(name);
+    return Triangle{};
+  };
+  character.buffers.emplace_back();
+  character.buffers.back().triangle_count = static_cast<Index>(character.source_triangles.size());
+  const auto add = [&](const char* mesh, const std::vector<const char*>& joints) {
+    character.buffers.emplace_back();
+    character.buffers.back().name = mesh;
+    character.buffers.back().triangle_count = static_cast<Index>(joints.size());
+    for (const char* joint : joints) character.source_triangles.push_back(triangle_of(joint));
+  };
+  add("Object_7 Backpack_Mat", {"mixamorig:Spine2", "mixamorig:Spine2"});
+  add("LeftEar", {"mixamorig:Head"});
+  add("Hair Skirt", {"mixamorig:Head", "mixamorig:Spine2"});
+  add("Chest_Armor", {"mixamorig:Spine2"});
+  const BodyParts parts = find_body_parts(character, roles, {}, {}, {});
+  check_whole(character, parts);
+  CHECK(parts.parts.size() == before + 2);
+  const BodyPart& backpack = part_called(parts, "backpack");
+  CHECK(parts.parts[static_cast<std::size_t>(backpack.parent)].name == "chest");
+  CHECK(backpack.bone == part_called(parts, "chest").bone);
+  CHECK(part_called(parts, "left ear").side == Side::kLeft);
+  CHECK(parts.parts[static_cast<std::size_t>(part_called(parts, "head").parent)].name == "neck");
 }
 
 TEST_CASE("animals have forelegs and hind legs, insects numbered legs") {
@@ -345,4 +455,6 @@ TEST_CASE("characters of SPHERECHAIN_TEST_DATA have the parts that people see") 
   CHECK(bone_name(barbarian, "left hand") == "wrist.l");
   CHECK(bone_name(barbarian, "head") == "head");
   CHECK(bone_name(barbarian, "right thigh") == "upperleg.r");
+  CHECK(bone_name(barbarian, "1H_Axe_Offhand") == "1H_Axe_Offhand");
+  CHECK(bone_name(barbarian, "hat") == "Barbarian_Hat");
 }

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <set>
 
+#include "baker/edits/held_props.h"
 #include "baker/motion/clip.h"
 #include "baker/pipeline/pipeline.h"
 #include "baker/play/asset_file.h"
@@ -63,12 +65,12 @@ double worst_distance(const std::vector<Vector3d>& a, const std::vector<Vector3d
 
 }  // namespace
 
-TEST_CASE("an asset baked with attachments finds the same source again, and fits the file's own buffers" *
+TEST_CASE("an asset with attachments finds the same source again, and fits the file's own buffers" *
           doctest::test_suite("many bakes")) {
   const TemporaryFolder folder;
   const Glb glb = human_with_staff();
   const fs::path source = folder.write("staff.glb", glb.bytes()), asset = folder.path / "staff.sphc";
-  BakeSettings settings = make_settings("paper", R"({"attachments": true})", "");
+  BakeSettings settings = make_settings("paper", "{}", "");
   const Bake baked = bake(source, settings, {});
   CHECK(baked.character.metres_per_unit == doctest::Approx(0.01));
   CHECK(baked.character.source_positions.size() == human().regions.body.mesh.positions.size() + 8);
@@ -91,6 +93,30 @@ TEST_CASE("an asset baked with attachments finds the same source again, and fits
   }
 }
 
+TEST_CASE("hands ignore what they hold, and a hat makes nobody taller" * doctest::test_suite("many bakes") *
+          doctest::skip(kNoTestData)) {
+  const Bake baked = bake(test_data("KayKit_Barbarian.glb"), make_settings("balanced", "{}", ""), {});
+  CHECK(baked.regions.frame.height * baked.character.metres_per_unit == doctest::Approx(2.186).epsilon(0.001));
+  const std::vector<BodyPart>& parts = baked.body_parts.parts;
+  std::vector<std::set<std::string>> parts_of(baked.spheres.spheres.size());
+  for (std::size_t t = 0; t < baked.binding.sphere_of_triangle.size(); ++t) {
+    const std::uint8_t part = baked.body_parts.of_triangle[baked.character.skin_source_triangle[t]];
+    parts_of[baked.binding.sphere_of_triangle[t]].insert(parts[part].name);
+  }
+  const auto& ignored = baked.binding.ignored;
+  const PartPairs held = held_props(baked.body_parts);
+  CHECK(held.size() == 14);  // three things in one hand, two in the other
+  for (const auto& [a, b] : held) {
+    for (std::uint32_t i = 0; i < parts_of.size(); ++i) {
+      for (std::uint32_t j = 0; j < parts_of.size(); ++j) {
+        if (parts_of[i].count(a) + parts_of[j].count(b) < 2) continue;
+        CHECK(std::binary_search(ignored.begin(), ignored.end(),
+                                 std::pair<std::uint32_t, std::uint32_t>(std::minmax(i, j))));
+      }
+    }
+  }
+}
+
 TEST_CASE("files of the real world are where assimp's independent reader sees them, at rest and in a clip" *
           doctest::skip(kNoTestData)) {
   for (const char* name : {"CesiumMan.glb", "cesium_man_khronos.gltf", "mh_boxing.glb", "Fox.glb"}) {
@@ -108,15 +134,10 @@ TEST_CASE("files of the real world are where assimp's independent reader sees th
   }
 }
 
-TEST_CASE("a file's weapons, hats and capes on joints are counted, and come with attachments" *
-          doctest::skip(kNoTestData)) {
-  const std::string file = test_data("KayKit_Barbarian.glb");
-  ImportOptions attachments;
-  attachments.attachments = true;
-  const SourceMesh without = read_with_tinygltf(file, {}), with = read_with_tinygltf(file, attachments);
-  CHECK(without.meshes == 6);
-  CHECK(without.attachments_dropped == 7);
-  CHECK(with.meshes == 13);
-  CHECK(with.triangles.size() == 6543);
-  CHECK(with.rig.clips.size() == 76);
+TEST_CASE("a file's weapons, hats and capes on joints are read with the skin" * doctest::skip(kNoTestData)) {
+  const SourceMesh mesh = read_with_tinygltf(test_data("KayKit_Barbarian.glb"), {});
+  CHECK(mesh.meshes == 13);
+  CHECK(mesh.triangles.size() == 6543);
+  CHECK(mesh.rig.clips.size() == 76);
+  CHECK(std::count_if(mesh.rig.nodes.begin(), mesh.rig.nodes.end(), [](auto& n) { return n.is_attachment; }) == 7);
 }

@@ -27,8 +27,8 @@ void check_same(const std::vector<Vector3d>& ours, const std::vector<Vector3d>& 
 
 // The file's vertices are where the specification puts them, as its nodes stand and with a joint turned, moved and
 // scaled.
-void check_skinning(const Glb& glb, std::size_t moved_node, bool attachments = false) {
-  const SourceMesh mesh = read(glb, attachments);
+void check_skinning(const Glb& glb, std::size_t moved_node) {
+  const SourceMesh mesh = read(glb);
   check_same(world_positions(mesh, world_of(mesh.rig.nodes)), world_positions(glb));
   Glb posed = glb;
   json& node = posed.json["nodes"][moved_node];
@@ -36,7 +36,7 @@ void check_skinning(const Glb& glb, std::size_t moved_node, bool attachments = f
   node["rotation"] = {0.48, 0.6, 0, 0.64};
   node["translation"] = {0.5, 1.5, -2};
   node["scale"] = {1.25, 1.25, 1.25};
-  check_same(world_positions(mesh, world_of(read(posed, attachments).rig.nodes)), world_positions(posed));
+  check_same(world_positions(mesh, world_of(read(posed).rig.nodes)), world_positions(posed));
 }
 
 std::vector<Vector3d> raw_positions(const Glb& glb, int accessor) {
@@ -294,20 +294,18 @@ TEST_CASE("skins that differ by rounding only leave the file's vertices as they 
   CHECK(mesh.rig.bones.size() == 2);
 }
 
-TEST_CASE("what hangs on a joint is dropped and counted, or kept with attachments, in the pose the skin is bound in") {
+TEST_CASE("a rigid mesh below a joint is kept as an attachment, in the pose the skin is bound in") {
   Glb glb = two_boxes();
   const int sword = add_box(glb, 0, 0, 0);
   glb.json["nodes"].push_back({{"name", "grip"}, {"translation", {4, 1, 0}}, {"children", {5}}});
   glb.json["nodes"].push_back({{"name", "sword"}, {"mesh", sword}, {"scale", {0.5, 2, 0.5}}});
   glb.json["nodes"][2]["children"] = {4};
-  const SourceMesh without = read(glb), with = read(glb, true);
-  CHECK(without.positions.size() == 16);
-  CHECK(without.attachments_dropped == 1);
-  CHECK(without.meshes == 1);
-  REQUIRE(with.positions.size() == 24);
-  CHECK(with.attachments_dropped == 0);
-  CHECK((with.positions[16] - Vec3(4 - 0.5, 2 + 1 - 2, -0.5)).norm() < 1e-6);  // the joint is bound upright
-  for (const std::size_t moved : {2U, 4U, 5U}) check_skinning(glb, moved, true);
+  const SourceMesh mesh = read(glb);
+  CHECK(mesh.meshes == 2);
+  REQUIRE(mesh.positions.size() == 24);
+  for (const Node& node : mesh.rig.nodes) CHECK(node.is_attachment == (node.name == "sword"));
+  CHECK((mesh.positions[16] - Vec3(4 - 0.5, 2 + 1 - 2, -0.5)).norm() < 1e-6);  // the joint is bound upright
+  for (const std::size_t moved : {2U, 4U, 5U}) check_skinning(glb, moved);
 }
 
 TEST_CASE("a rigid mesh outside every skeleton is kept, and follows its node") {
@@ -322,7 +320,7 @@ TEST_CASE("a rigid mesh outside every skeleton is kept, and follows its node") {
     glb.json["nodes"][3]["children"] = {1, 4};
     CHECK((read(glb).positions[16] - Vec3(-1, 4, -1)).norm() < 1e-5);
   }
-  CHECK(read(glb).attachments_dropped == 0);
+  for (const Node& node : read(glb).rig.nodes) CHECK_FALSE(node.is_attachment);
   check_skinning(glb, 4);
 }
 

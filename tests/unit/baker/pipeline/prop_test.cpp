@@ -204,8 +204,7 @@ TEST_CASE("commands that read an asset take a prop's") {
 TEST_CASE("what only characters have is refused for a prop") {
   const TemporaryFolder folder;
   const std::string file = folder.write("box.glb", box().bytes()).string(), asset = (folder.path / "box.sphc").string();
-  for (const char* other :
-       {"--body biped", "--roles roles.json", "--profile paper", "--extremities", "--attachments"}) {
+  for (const char* other : {"--body biped", "--roles roles.json", "--profile paper", "--extremities"}) {
     check_error(run(fmt::format("bake {} --prop -o {} {}", file, asset, other)), 2, {"--prop", "excludes"});
   }
   for (const char* config : {R"({"body": "biped"})", R"({"roles": {"Neck": "head"}})", R"({"refit": "paper"})"}) {

@@ -46,11 +46,9 @@ Affine3d world(const json& nodes, std::size_t n) {
 
 }  // namespace
 
-SourceMesh read(const Glb& glb, bool attachments) {
+SourceMesh read(const Glb& glb) {
   const TemporaryFolder folder;
-  ImportOptions options;
-  options.attachments = attachments;
-  return read_with_tinygltf(folder.write("a.glb", glb.bytes()), options);
+  return read_with_tinygltf(folder.write("a.glb", glb.bytes()), {});
 }
 
 std::vector<Vector3d> world_positions(const Glb& glb) {

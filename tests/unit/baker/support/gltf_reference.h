@@ -7,7 +7,7 @@
 #include "glb_writer.h"
 
 // Reads the file with the reader under test.
-spherechain::baker::SourceMesh read(const Glb& glb, bool attachments = false);
+spherechain::baker::SourceMesh read(const Glb& glb);
 
 // Where a file's vertices are in the world while its nodes stand as it says, straight from the specification's section
 // on skins, in the order of the nodes and their primitives: a reference with nothing of the reader in it. For files
