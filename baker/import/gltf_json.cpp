@@ -306,6 +306,17 @@ std::set<std::size_t> coarse_nodes(const json& root) {
   return out;
 }
 
+// The nodes of a preview's spheres: bake --preview marks them.
+std::set<std::size_t> preview_spheres(const json& root) {
+  std::set<std::size_t> out;
+  if (!root.contains("nodes")) return out;
+  for (std::size_t n = 0; n < root["nodes"].size(); ++n) {
+    const json& node = root["nodes"][n];
+    if (node.contains("extras") && node["extras"].is_object() && node["extras"].contains("spherechain")) out.insert(n);
+  }
+  return out;
+}
+
 // Texts. Nothing that is wrong with a picture stops an import.
 json uris_of_images(const json& all) {
   json uris = json::array();
@@ -358,10 +369,11 @@ json check_gltf_json(std::string_view text, const std::string& file) {
   }
   check_extensions(root, file);
   check_members(root, file);
-  const std::set<std::size_t> coarse = coarse_nodes(root);
+  const std::set<std::size_t> coarse = coarse_nodes(root), spheres = preview_spheres(root);
   strip(root);
   keep_humanoid(all, root);
   for (const std::size_t node : coarse) root["nodes"][node]["extras"]["coarse"] = true;
+  for (const std::size_t node : spheres) root["nodes"][node]["extras"]["spherechain"] = true;
   root["images"] = uris_of_images(all);
   root["materials"] = names_of_materials(all);
   return root;

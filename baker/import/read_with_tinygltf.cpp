@@ -72,6 +72,7 @@ GltfNodes with_chosen_meshes(const GltfFile& file, GltfNodes nodes, const std::s
   std::vector<std::size_t> places;
   for (std::size_t n = 0; n < file.model.nodes.size(); ++n) {
     const tinygltf::Node& node = file.model.nodes[n];
+    if (node.extras.Has("spherechain")) nodes.in_scene[n] = false;
     if (!nodes.in_scene[n] || node.mesh < 0) continue;
     ShownMesh mesh{nodes.of_file[n], kNoIndex, file.model.meshes[at(node.mesh)].name, {}, is_coarse[nodes.of_file[n]]};
     if (node.skin >= 0) {

@@ -275,6 +275,8 @@ void add_spheres(tinygltf::Model& model, const Bake& bake, const std::vector<Ver
       tinygltf::Node node;
       node.name = sphere_name(bake.regions, bake.spheres.spheres[region[place]], place);
       node.mesh = mesh;
+      // A preview that is baked again is the character alone.
+      node.extras = tinygltf::Value(tinygltf::Value::Object{{"spherechain", tinygltf::Value("sphere")}});
       node.scale = std::vector<double>(3, sphere.rest.radius);
       if (bake.joints.empty()) {
         node.translation = to_numbers(sphere.rest.center);
