@@ -22,7 +22,7 @@ constexpr Rule kDefault = [] {
   out.fold = 0.11F;
   out.neighbours = 0.055F;
   out.fold_depth = 0.045F;
-  out.loose_depth = 0.06F;
+  out.loose_depth = 0.08F;
   out.inside = 0.6F;
   return out;
 }();
