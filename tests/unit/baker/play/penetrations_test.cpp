@@ -310,3 +310,34 @@ TEST_CASE("the direction of a fault stays while it is nearly as good as the shor
   CHECK(across.distance <= 1.25F * full.distance);
   CHECK(across.direction.z > full.direction.z + 0.05F);
 }
+
+TEST_CASE(
+    "a fault of the frame before stays one until it is clearly shallower than is allowed, whichever part was named "
+    "first") {
+  const TwoShapes balls(ball(1, 16), ball(1, 16));
+  const auto place = shifted(1.5, 0, 0);
+  const spherechain::Penetration alone = only(balls.measure(place));
+  spherechain::Rule rule = sc_default_rule();
+  for (const bool swaps : {false, true}) {
+    spherechain::Penetration last = alone;
+    last.kind = SC_CLASS_PENETRATION;
+    if (swaps) std::swap(last.part, last.other);
+    const auto kind = [&](float allowed, bool has_history) {
+      rule.touch_depth = allowed * alone.measures.depth;
+      const spherechain::Penetration out = only(balls.measure(place, [&](spherechain::PenetrationJob& job) {
+        job.rule = &rule;
+        job.previous = &last;
+        job.previous_count = has_history ? 1 : 0;
+      }));
+      CHECK((out.fault_depth > 0) == (allowed < 1));
+      return out.kind;
+    };
+    CHECK(kind(0.99F, false) == SC_CLASS_PENETRATION);
+    CHECK(kind(1.01F, false) == SC_CLASS_TOUCH);
+    CHECK(kind(1.01F, true) == SC_CLASS_PENETRATION);
+    CHECK(kind(1.4F, true) == SC_CLASS_PENETRATION);
+    CHECK(kind(1.45F, true) == SC_CLASS_TOUCH);
+    last.kind = SC_CLASS_TOUCH;
+    CHECK(kind(1.01F, true) == SC_CLASS_TOUCH);
+  }
+}
