@@ -84,7 +84,7 @@ class SkinPlayer {
     return find_next(&other, query(SC_DETAIL_FULL), is_next);
   }
   // The same by the quick form, as games do; of some pairs of body parts alone, or of all. `is_next`: the pose follows
-  // the last one that was measured at all.
+  // the one that measure() or this measured last.
   const std::vector<Penetration>& measure_quickly(const PartPairBits* pairs = nullptr, bool is_next = false);
   // Measures two body parts alone, in full, without history. Empty if they do not intersect.
   std::optional<Penetration> measure_parts(std::uint32_t part_a, std::uint32_t part_b);

@@ -341,7 +341,7 @@ namespace Spherechain
         public uint Joint;
         public PenetrationClass Kind;
         public Vec3 Direction;
-        /// <summary>how much deeper than the rule allows: 0 or more, continuous in the pose; shallower where less of it can be seen. It does not depend on `previous`</summary>
+        /// <summary>how much deeper than the rule allows, the less the less of it can be seen; 0: not deeper. It is continuous in `measures`, where `through` is 0, and does not depend on `previous`</summary>
         public float FaultDepth;
         /// <summary>measures.depth; up to 1.5 times as much where `previous` keeps the direction</summary>
         public float Distance;

@@ -197,7 +197,7 @@ export interface Penetration {
   kind: PenetrationClass;
   /** Unit length. `part`, moved by distance * direction, no longer intersects `other`. */
   direction: Float32Array;
-  /** How much deeper than the rule allows, less where little of it is seen: continuous in the pose, 0 where it is no fault. */
+  /** How much deeper than the rule allows, less where little of it is seen. 0: not deeper. */
   faultDepth: number;
   /** Measures.depth. With `previous`, up to 1.5 times as much where the direction of the last frame is kept. */
   distance: number;

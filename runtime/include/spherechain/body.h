@@ -50,9 +50,9 @@ typedef struct sc_query {
   uint32_t classes SC_ZERO;    /* bit k: penetrations of class k are listed; 0: faults alone */
   size_t limit SC_ZERO;        /* the worst so many; 0: as many as there is room for */
   /* Pass the last result of the same question for steady faults and directions. A fault then stays one until it is
-   * shallower than 70 % of what the rule allows. A fault's direction turns by less than 30
-   * degrees, as long as that way is at most half as long again as the shortest (sc_penetration.distance). The body's
-   * last list stays valid for this. If you ask several questions in turn, keep a copy of each list. */
+   * shallower than 70 % of what the rule allows. A fault's direction turns by less than 30 degrees, as long as that way
+   * is at most half as long again as the shortest (sc_penetration.distance). The body's last list stays valid for this.
+   * If you ask several questions in turn, keep a copy of each list. */
   const sc_penetration* previous SC_ZERO;
   size_t previous_count SC_ZERO;
   float tolerance SC_ZERO;  /* of steps, a share of the height; 0: 0.0001 */

@@ -46,8 +46,8 @@ typedef struct sc_penetration {
   /* In the pose's space, of unit length. `part`, moved by distance * direction, no longer intersects `other`. If a part
    * meets itself, one side of the triangles that intersect moves. */
   sc_vec3 direction;
-  float fault_depth; /* how much deeper than the rule allows: 0 or more, continuous in the pose; shallower where less of
-                        it can be seen. It does not depend on `previous` */
+  float fault_depth; /* how much deeper than the rule allows, the less the less of it can be seen; 0: not deeper. It is
+                        continuous in `measures`, where `through` is 0, and does not depend on `previous` */
   float distance;    /* measures.depth; up to 1.5 times as much where `previous` keeps the direction */
   sc_vec3 centre;    /* of the line where the parts cross; of the ground: of the box */
   sc_vec3 low, high; /* a box around that line; of the ground: around the skin below it */

@@ -60,7 +60,7 @@ class Penetration(NamedTuple):
     depth: float  #: the shortest way out
     depth_mm: float  #: the same in millimetres, by the model's metres_per_unit
     depth_percent: float  #: the same in % of the height
-    fault_depth: float  #: how much deeper than the rule allows, less where little of it is seen; continuous in the pose
+    fault_depth: float  #: how much deeper than the rule allows, less where little of it is seen; 0: not deeper
     distance: float  #: `part`, moved so far in `direction`, is free of `other`
     direction: NDArray[np.float32]  #: (3,), of unit length
     joint: Optional[int]  #: moves `part`, into Model.joints

@@ -418,6 +418,7 @@ class Measurer {
 
   Seen look(const TwoParts& parts, const Double3 (&axes)[3]) {
     const Seen seen = memory_.visibility.look(parts.contour, axes, kClearance * height_);
+    // From twice `hidden` on, more changes neither class nor fault depth.
     if (!(seen.share < 2 * double{in_.limits.hidden}) || parts.contour.segments.size == parts.all.size) {
       return seen;
     }

@@ -27,8 +27,8 @@ constexpr Rule kDefault = [] {
   return out;
 }();
 
-constexpr double kAnyDepth = 1e30;
-constexpr float kEase = 0.7F;  // of what is allowed
+constexpr double kAnyDepth = 1e30;  // finite: a share of 0 leaves nothing of it
+constexpr float kEase = 0.7F;       // of what is allowed
 
 // How close two spots are at rest: 1 up to half of the limit, a half at it, 0 from one and a half times it on.
 double closeness(float distance, float limit) {
