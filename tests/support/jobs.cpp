@@ -226,7 +226,7 @@ std::vector<std::uint16_t> find_inside(const Asset& asset, const Pose& pose, Tar
   const Refitted spheres = refit(asset, pose, SC_RADIUS_DETECT, target);
   const Detected pairs = detect(asset, spheres.spheres, SC_RADIUS_DETECT, target);
   const PreparedSkin skin(asset);
-  std::vector<std::uint16_t> out(spheres.spheres.size());
+  std::vector<std::uint16_t> out(probe_count(view_of(asset)));
   std::vector<std::uint64_t> scratch(inside_scratch_words(view_of(asset), view_of(asset)));
   std::vector<Pair> of_pairs = pairs.pairs;
   InsideJob job;

@@ -47,10 +47,11 @@ typedef struct sc_penetration {
    * meets itself, one side of the triangles that intersect moves. */
   sc_vec3 direction;
   float fault_depth; /* how much deeper than the rule allows, the less the less of it can be seen; 0: not deeper. It is
-                        continuous in `measures`, where `through` is 0, and does not depend on `previous` */
-  float distance;    /* measures.depth; up to 1.5 times as much where `previous` keeps the direction */
-  sc_vec3 centre;    /* of the line where the parts cross; of the ground: of the box */
-  sc_vec3 low, high; /* a box around that line; of the ground: around the skin below it */
+                        continuous in `measures`, and does not depend on `previous` */
+  float distance; /* measures.depth, but for a part that is about half inside; up to 1.5 times as much where `previous`
+                     keeps the direction */
+  sc_vec3 centre; /* of the line where the parts cross; of the ground: of the box */
+  sc_vec3 low, high;                    /* a box around that line; of the ground: around the skin below it */
   sc_skin_point deepest, deepest_other; /* the points that part last; deepest_other - deepest = distance * direction */
   sc_measures measures;
 } sc_penetration;

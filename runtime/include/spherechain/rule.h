@@ -13,7 +13,7 @@ SC_ENUM(sc_penetration_class){
     SC_CLASS_FOLD = 3,        /* neighbours on the body meet near their joint: an elbow, a groin */
     SC_CLASS_DEEP_FOLD = 4,   /* a fold within one piece of skin that is deep: a fault */
     SC_CLASS_PENETRATION = 5, /* everything else: a fault */
-    SC_CLASS_INSIDE = 6,      /* the middle of the one part is inside the other, or goes through it: a fault */
+    SC_CLASS_INSIDE = 6,      /* the middle of the one part is inside the other, or a fault goes through it */
 };
 
 /* How two body parts hang together. */
@@ -43,9 +43,9 @@ typedef struct sc_measures {
   float height, metre;  /* how long the character's height and a metre are in the pose's units */
   sc_relation relation;
   int32_t is_one_piece; /* 1: the two spots are of one piece of skin */
-  float swallowed;      /* 0 to 1: of the spheres' centres of `part` the share that is inside `other`; where that holds
-                           most of them, inside any part. 0 where they were not looked at */
-  int32_t through;      /* 1: some of `part` is inside, and its limb comes out again on the other side */
+  float swallowed;      /* 0 to 1: of points in the middle of `part` the share that is inside `other`; where that holds
+                           most of them, inside any part. 0 while no centre of its spheres is inside */
+  int32_t through;      /* 1: a sphere's centre is inside, and its limb comes out again on the other side */
 } sc_measures;
 
 /* The limits of the classes. Each reason that excuses an intersection (touch, fold, shell) allows a depth. An

@@ -58,8 +58,8 @@ std::size_t lay_out(sc_body& body, const sc_body_def& def, std::uint64_t* words)
   memory.take(body.contact_spheres, max_triangles);
   memory.take(body.triangles, max_triangles);
   memory.take(body.part_pairs, words_for(parts));
-  memory.take(body.inside[0], spheres);
-  memory.take(body.inside[1], view_of(other.asset).spheres().size);
+  memory.take(body.inside[0], probe_count(asset));
+  memory.take(body.inside[1], probe_count(view_of(other.asset)));
   memory.take(body.other_spheres, view_of(other.asset).spheres().size);
   for (Span<sc_penetration>& list : body.penetrations) {
     memory.take(list, def.max_penetrations > 0 ? def.max_penetrations : kPenetrations);

@@ -32,8 +32,7 @@ struct sc_body {
   std::uint64_t* part_pairs;                          // a bit for each two parts, as of a contact job
   spherechain::Span<sc_penetration> penetrations[2];  // of the last question, and of the one before
   spherechain::Span<sc_step_contact> steps;
-  spherechain::Span<std::uint16_t>
-      inside[2];  // of each sphere, and of the other body's: the part that holds its centre
+  spherechain::Span<std::uint16_t> inside[2];  // of each probe, and of the other body's: the part that holds it
   spherechain::Span<sc_sphere> other_spheres;  // the other body's
   bool has_spheres;                            // of this pose, with that radius
   sc_radius spheres_radius;

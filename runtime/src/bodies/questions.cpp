@@ -225,10 +225,9 @@ Status find_insides(sc_body& body, const sc_body* other, const sc_query& query, 
   if (of_other != SC_OK) {
     return of_other;
   }
-  const std::size_t count = asset_of(*other).spheres().size;
   std::swap(job.body, job.skin);
-  job.centers = {body.other_spheres.data, count};
-  job.part = {body.inside[1].data, count};
+  job.centers = {body.other_spheres.data, asset_of(*other).spheres().size};
+  job.part = {body.inside[1].data, probe_count(asset_of(*other))};
   job.run();
   measure.inside_b = job.part.data;
   return done();

@@ -201,17 +201,13 @@ Exit steady_exit(Sweep& sweep, const Contour& contour, const ExitSettings& setti
   return search.best();
 }
 
-Exit parting_exit(Sweep& sweep, const Double3& wanted) {
+Exit parting_exit(Sweep& sweep) {
   const Contour none;
   Search search(sweep, none, 1, true);
   sweep.keep_near(HUGE_VAL);
   for (int k = 0; k < 27; ++k) {
     const int x = k % 3 - 1, y = k / 3 % 3 - 1, z = k / 9 - 1;
     search.refine({double(x), double(y), double(z)}, 0);
-  }
-  Double3 direction = wanted;
-  if (normalize(direction)) {
-    search.prefer(direction);
   }
   return search.best();
 }

@@ -26,8 +26,7 @@ Exit shortest_exit(Sweep& sweep, const Contour& contour, const ExitSettings& set
 // In that direction, or near it, where it is nearly as good as the shortest, which was found last; else the shortest.
 Exit steady_exit(Sweep& sweep, const Contour& contour, const ExitSettings& settings, const Exit& shortest,
                  const Double3& wanted);
-// The shortest of many ways by which b parts from all of a, where no triangles of the two meet; or `wanted`, or near
-// it, where it is nearly as good. The sweep's gap must be larger than both parts.
-Exit parting_exit(Sweep& sweep, const Double3& wanted);
+// The shortest of many ways by which b parts from all of a. The sweep's gap must be larger than both parts.
+Exit parting_exit(Sweep& sweep);
 
 }  // namespace spherechain

@@ -14,9 +14,18 @@ constexpr std::size_t kLimbMost = 128;  // spheres; a body of more has no limbs
 
 Containment::Containment(const AssetView& asset, const Surface& surface, const std::uint16_t* inside)
     : asset_(asset), surface_(surface), inside_(inside) {
-  const std::size_t count = asset.spheres().size;
+  const std::size_t count = asset.spheres().size;  // a core point is inside only where a sphere is
   if (inside != nullptr && std::all_of(inside, inside + count, [](std::uint16_t of) { return of == kOutside; })) {
     inside_ = nullptr;
+  }
+}
+
+template <typename Visit>
+void Containment::for_core(std::size_t part, const Visit& visit) const {
+  for (std::size_t place = kCorePoints * part; place < kCorePoints * (part + 1); ++place) {
+    if (surface_.core_triangles[place] != kNoPlace) {
+      visit(inside_[asset_.spheres().size + place]);
+    }
   }
 }
 
@@ -26,14 +35,10 @@ Containment::Holder Containment::holder_of(std::size_t part) const {
     return out;
   }
   std::size_t all = 0, held = 0, most = 0, counts[kMaxPartCount + 1] = {};
-  for (std::size_t s = 0; s < surface_.sphere_parts.size; ++s) {
-    if (surface_.sphere_parts[s] != part || !is_core(surface_, s)) {
-      continue;
-    }
+  for_core(part, [&](std::uint16_t by) {
     ++all;
-    const std::uint16_t by = inside_[s];
     if (by == kOutside) {
-      continue;
+      return;
     }
     ++held;
     ++counts[by];
@@ -41,9 +46,19 @@ Containment::Holder Containment::holder_of(std::size_t part) const {
       most = counts[by];
       out.part = by;
     }
-  }
+  });
   out.share = held == 0 ? 0 : static_cast<double>(held) / static_cast<double>(all);
   return out;
+}
+
+void Containment::mark_holders(std::size_t part, bool* holds) const {
+  if (inside_ != nullptr) {
+    for_core(part, [&](std::uint16_t by) {
+      if (by != kOutside) {
+        holds[by] = true;
+      }
+    });
+  }
 }
 
 double Containment::swallowed(std::size_t part, std::size_t other) const {
@@ -52,12 +67,10 @@ double Containment::swallowed(std::size_t part, std::size_t other) const {
     return holder.share;
   }
   std::size_t all = 0, held = 0;
-  for (std::size_t s = 0; s < surface_.sphere_parts.size; ++s) {
-    if (surface_.sphere_parts[s] == part && is_core(surface_, s)) {
-      ++all;
-      held += inside_[s] == other ? 1 : 0;
-    }
-  }
+  for_core(part, [&](std::uint16_t by) {
+    ++all;
+    held += by == other ? 1 : 0;
+  });
   return static_cast<double>(held) / static_cast<double>(all);
 }
 

@@ -5,12 +5,13 @@
 #include <cmath>
 
 #include "runtime/src/base/pair_bits.h"
+#include "runtime/src/skin/core_point.h"
+#include "runtime/src/skin/windings.h"
 
 namespace spherechain {
 namespace {
 
-constexpr int kHalvesMin = 4;          // of six
-constexpr std::size_t kShortAxis = 2;  // most characters stand along y, and are thinnest along z
+constexpr int kHalvesMin = 4;  // of six
 
 int middle_of(int a, int b, int c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); }
 
@@ -26,11 +27,17 @@ class Winding : public Crossings {
   const Surface& surface_;
 };
 
+struct Probe {
+  Vec3 at;
+  const std::int8_t* at_rest;  // windings
+  std::size_t sphere, part;    // its own
+};
+
 // The surfaces that a half-line leaves without having entered them: those that its start is inside of.
 class Enclosing : public Crossings {
  public:
-  Enclosing(const InsideTest& test, std::size_t sphere, int handedness)
-      : test_(test), sphere_(sphere), handedness_(handedness) {}
+  Enclosing(const InsideTest& test, const Probe& probe, int handedness)
+      : test_(test), probe_(probe), handedness_(handedness) {}
 
   void add(std::uint32_t triangle, int side, double height) override {
     Entry entry{std::abs(height), triangle, side * test_.skin.surface->facings[triangle] * handedness_ > 0};
@@ -90,19 +97,19 @@ class Enclosing : public Crossings {
       const std::uint64_t* const ignored = test_.ignored_parts;
       return ignored == nullptr || (ignored[of / 64] >> of % 64 & 1) == 0;
     }
-    const std::size_t own = test_.surface.sphere_parts[sphere_], other = skin.triangle_spheres[triangle];
+    const std::size_t own = probe_.part, sphere = probe_.sphere, other = skin.triangle_spheres[triangle];
     const auto hangs_on = [&](std::size_t a, std::size_t b) {
       return test_.asset.part(a).parent == static_cast<std::int32_t>(b);
     };
-    if (of == own || hangs_on(of, own) || hangs_on(own, of) || other == sphere_) {
+    if (of == own || hangs_on(of, own) || hangs_on(own, of) || other == sphere) {
       return false;
     }
-    const std::size_t bit = ignored_bit(std::min(sphere_, other), std::max(sphere_, other));
+    const std::size_t bit = ignored_bit(std::min(sphere, other), std::max(sphere, other));
     return (test_.skin.ignored[bit / 64] >> bit % 64 & 1) == 0;
   }
 
   const InsideTest& test_;
-  std::size_t sphere_;
+  const Probe& probe_;
   int handedness_;
   Half halves_[2];
 };
@@ -114,39 +121,77 @@ class Tester {
   void run() {
     std::fill(test_.part.begin(), test_.part.end(), kOutside);
     int turns = 0;
-    for_probes([&](std::size_t s) {
-      count_windings(s);
+    for_spheres([&](std::size_t s, const Probe& probe) {
+      count_windings(probe, test_.windings + 3 * s);
       turns += middle(test_.windings + 3 * s);
     });
     // A pose that mirrors the skin turns it inside out: then most probes of a body lie inside it the other way round.
-    const int handedness = test_.are_one && turns < 0 ? -1 : 1;
-    for_probes([&](std::size_t s) {
-      if (is_deeper(s, handedness)) {
-        test_.part[s] = holder_of(s, handedness);
+    handedness_ = test_.are_one && turns < 0 ? -1 : 1;
+    bool holds[256] = {};
+    for_spheres([&](std::size_t s, const Probe& probe) {
+      if (is_deeper(probe, test_.windings + 3 * s)) {
+        test_.part[s] = holder_of(probe);
+        holds[probe.part] = holds[probe.part] || test_.part[s] != kOutside;
       }
     });
+    for (std::size_t part = 0; part < test_.asset.part_count(); ++part) {
+      if (holds[part]) {
+        test_core(part);
+      }
+    }
   }
 
  private:
   template <typename Visit>
-  void for_probes(const Visit& visit) {
+  void for_spheres(const Visit& visit) {
     for (std::size_t s = 0; s < test_.centers.size; ++s) {
       const Sphere& center = test_.centers[s];
-      const bool is_finite = std::isfinite(center.x) && std::isfinite(center.y) && std::isfinite(center.z);
-      if ((test_.asked[s / 64] >> s % 64 & 1) != 0 && is_finite && is_core(test_.surface, s)) {
-        visit(s);
+      if ((test_.asked[s / 64] >> s % 64 & 1) != 0 && is_finite(center) && is_core(test_.surface, s)) {
+        visit(s, Probe{{center.x, center.y, center.z},
+                       test_.surface.rest_windings.data + 3 * s,
+                       s,
+                       test_.surface.sphere_parts[s]});
+      }
+    }
+  }
+
+  template <typename T>
+  static bool is_finite(const T& point) {
+    return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
+  }
+
+  void test_core(std::size_t part) {
+    const Surface& surface = test_.surface;
+    for (std::size_t k = 0; k < kCorePoints; ++k) {
+      const std::size_t place = kCorePoints * part + k;
+      const std::uint32_t triangle = surface.core_triangles[place];
+      if (triangle == kNoPlace) {
+        continue;
+      }
+      const std::size_t sphere = surface.triangle_spheres[triangle];
+      const Sphere& center = test_.centers[sphere];
+      float corners[3][3];
+      find_corners(test_.target, test_.own, triangle, corners);
+      const Probe probe{core_point(corners, {center.x, center.y, center.z}, k), surface.core_windings.data + 3 * place,
+                        sphere, part};
+      std::int16_t windings[3];
+      if (is_finite(probe.at)) {
+        count_windings(probe, windings);
+        if (is_deeper(probe, windings)) {
+          test_.part[test_.centers.size + place] = holder_of(probe);
+        }
       }
     }
   }
 
   // The part whose skin is nearest, where most half-lines along the axes leave another part's skin.
-  std::uint16_t holder_of(std::size_t sphere, int handedness) {
+  std::uint16_t holder_of(const Probe& probe) {
     std::uint16_t nearest = kOutside;
     double least = HUGE_VAL;
     int count = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      Enclosing enclosing(test_, sphere, handedness);
-      follow_from(sphere, axis, true, enclosing);
+      Enclosing enclosing(test_, probe, handedness_);
+      follow_from(probe, axis, true, enclosing);
       enclosing.for_halves([&](std::uint16_t part, double distance) {
         count += part == kOutside ? 0 : 1;
         if (distance < least || (!(distance > least) && part < nearest)) {
@@ -163,22 +208,18 @@ class Tester {
     return middle_of(of[0], of[1], of[2]);
   }
 
-  const std::int8_t* at_rest(std::size_t sphere) const { return test_.surface.rest_windings.data + 3 * sphere; }
-
-  void follow_from(std::size_t sphere, std::size_t axis, bool goes_down, Crossings& found) {
-    const Sphere& center = test_.centers[sphere];
-    follow(test_.target, test_.skin, {{center.x, center.y, center.z}, axis, true, goes_down}, found);
+  void follow_from(const Probe& probe, std::size_t axis, bool goes_down, Crossings& found) {
+    follow(test_.target, test_.skin, {{probe.at.x, probe.at.y, probe.at.z}, axis, true, goes_down}, found);
     test_.skin.has_sphere_boxes = true;
   }
 
   // Along one axis, where a closed skin gives the same along each; else along all three, and the middle counts.
-  void count_windings(std::size_t sphere) {
-    const std::int8_t* const rest = at_rest(sphere);
+  void count_windings(const Probe& probe, std::int16_t* out) {
+    const std::int8_t* const rest = probe.at_rest;
     const bool is_closed = test_.are_one && rest[0] == rest[1] && rest[1] == rest[2];
-    std::int16_t* const out = test_.windings + 3 * sphere;
     for (std::size_t axis = is_closed ? kShortAxis : 0; axis < 3; ++axis) {
       Winding winding(*test_.skin.surface);
-      follow_from(sphere, axis, false, winding);
+      follow_from(probe, axis, false, winding);
       out[axis] = static_cast<std::int16_t>(std::max(-9999, std::min(winding.total, 9999)));
     }
     if (is_closed) {
@@ -186,19 +227,19 @@ class Tester {
     }
   }
 
-  bool is_deeper(std::size_t sphere, int handedness) const {
-    const std::int16_t* const now = test_.windings + 3 * sphere;
+  bool is_deeper(const Probe& probe, const std::int16_t* now) const {
     if (!test_.are_one) {
       return middle(now) != 0;
     }
     int more[3];
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      more[axis] = handedness * now[axis] - at_rest(sphere)[axis];
+      more[axis] = handedness_ * now[axis] - probe.at_rest[axis];
     }
     return middle(more) > 0;
   }
 
   const InsideTest& test_;
+  int handedness_ = 1;
 };
 
 }  // namespace

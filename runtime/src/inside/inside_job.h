@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which of a body's spheres have their centres inside another part of it, or inside another body?
+// Which of a body's spheres have their centres inside another part of it, or inside another body? And which core points
+// of parts that have such a sphere?
 #pragma once
 
 #include "runtime/src/inside/inside.h"
@@ -17,7 +18,7 @@ struct InsideJob {
   Span<const Pair> pairs;            // of one body: those that touch; other spheres are not looked at
   bool has_all_pairs = true;         // else all spheres are looked at
   std::uint64_t* scratch = nullptr;  // inside_scratch_words() of them
-  Span<std::uint16_t> part;          // out
+  Span<std::uint16_t> part;          // out: probe_count() of body's
 
   void run() const;
 };

@@ -66,6 +66,23 @@ void follow_line(const PosedClusters& skin, const Line& line, Crossings& found) 
   }
 }
 
+void load_corners(const PosedClusters& skin, std::uint32_t triangle, float (&out)[3][3]) {
+  const Surface& surface = *skin.surface;
+  std::size_t c = surface.first_clusters[surface.triangle_spheres[triangle]];
+  while (triangle >= surface.clusters[c].first_triangle + std::uint32_t{surface.clusters[c].triangle_count}) {
+    ++c;
+  }
+  if (skin.is_loaded[c] == 0) {
+    load(skin, c);
+  }
+  const Slots slots = slots_of(skin, c);
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      out[k][axis] = slots.axes[axis][surface.corners[3 * std::size_t{triangle} + k]];
+    }
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();
@@ -75,11 +92,16 @@ namespace spherechain {
 namespace {
 
 SPHERECHAIN_KERNELS(follow_line);
+SPHERECHAIN_KERNELS(load_corners);
 
 }  // namespace
 
 void follow(Target resolved, const PosedClusters& skin, const Line& line, Crossings& found) {
   follow_line_kernels[index_of(resolved)](skin, line, found);
+}
+
+void find_corners(Target resolved, const PosedClusters& skin, std::uint32_t triangle, float (&out)[3][3]) {
+  load_corners_kernels[index_of(resolved)](skin, triangle, out);
 }
 
 }  // namespace spherechain

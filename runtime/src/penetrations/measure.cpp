@@ -201,11 +201,6 @@ class Measurer {
     return count;
   }
 
-  static Span<const TriangleRun> runs_of(const Surface& surface, std::size_t part) {
-    const std::uint32_t first = surface.first_of_part[part];
-    return {surface.part_runs.data + first, surface.first_of_part[part + 1] - first};
-  }
-
   // Triangles each once.
   Span<const TriangleRun> unique(Span<TriangleRun> runs) const {
     const auto first = [](const TriangleRun& run) { return run.first; };
@@ -244,12 +239,15 @@ class Measurer {
     double swallowed = 0;     // share of the one that is inside the other
     bool b_is_inner = false;  // it is b
     bool passes_through = false;
+    double containment = 0;  // as containment_of()
+    double apart = 0;        // where it is above 0: how far the inner part is from being clear of all around it
+    Exit way_apart;
   };
 
   // `seen`: how many of the segments, the first, are of outer layers.
   TwoParts two_parts(Span<Segment3> all, std::size_t seen) {
     has_outer_layers_ = seen > 0;
-    TwoParts out{all, surface_a_.parts[all[0].a], surface_b_.parts[all[0].b], {}, false, 0};
+    TwoParts out{all, surface_a_.parts[all[0].a], surface_b_.parts[all[0].b], {}, false, 0, 0, false, false, 0, 0, {}};
     out.contour = contour_of(memory_.skins, {all.data, seen > 0 ? seen : all.size}, rest_height_, memory_.contour);
     const double area_a = double{surface_a_.part_areas[out.a]}, area_b = double{surface_b_.part_areas[out.b]};
     const int mobility_a = in_.a.asset->part(out.a).mobility, mobility_b = in_.b.asset->part(out.b).mobility;
@@ -263,14 +261,14 @@ class Measurer {
   // The part that is inside the other is named first, where both are of one body.
   void set_swallowed(TwoParts& parts) const {
     const double a = core_a_.swallowed(parts.a, parts.b), b = core_b_.swallowed(parts.b, parts.a);
-    const double limit = double{in_.limits.inside};
-    if (in_.are_one && std::max(a, b) >= limit && a != b) {
+    if (in_.are_one && containment_of(in_.limits, std::max(a, b)) > 0 && a != b) {
       parts.swaps = b > a;
     }
     parts.b_is_inner = in_.are_one ? parts.swaps : b > a;
     parts.swallowed = parts.b_is_inner ? b : a;
     parts.passes_through =
         parts.b_is_inner ? core_b_.passes_through(parts.b, parts.a) : core_a_.passes_through(parts.a, parts.b);
+    parts.containment = containment_of(in_.limits, parts.swallowed);
   }
 
   // Parts that are inside another, where no triangles meet.
@@ -289,6 +287,7 @@ class Measurer {
         parts.b_is_inner = in_.are_one || is_of_b;
         parts.swallowed = holder.share;
         parts.passes_through = core.passes_through(part, holder.part);
+        parts.containment = 1;
         keep_worst(in_.out, measure_enclosed(parts), found);
         ++found;
       }
@@ -307,20 +306,27 @@ class Measurer {
     return !have_met && (in_.part_pairs == nullptr || (in_.part_pairs[place / 64] >> place % 64 & 1) != 0);
   }
 
-  // The triangles of the outer part and of those that it hangs together with: the inner one may come out of them, too.
-  // The parts that the inner one hangs together with are left out, where both are of one body.
+  // The triangles of the parts that hold some of the inner one's core, and of those that these hang together with: the
+  // inner one may come out of them, too. The parts that it hangs together with itself are left out, where both are of
+  // one body.
   Span<const TriangleRun> runs_around(const TwoParts& parts) {
     const Surface& surface = parts.b_is_inner ? surface_a_ : surface_b_;
     const AssetView& asset = parts.b_is_inner ? *in_.a.asset : *in_.b.asset;
     const std::size_t outer = parts.b_is_inner ? parts.a : parts.b, inner = parts.b_is_inner ? parts.b : parts.a;
     std::size_t count = 0;
+    bool holds[kMaxPartCount + 1] = {};
+    (parts.b_is_inner ? core_b_ : core_a_).mark_holders(inner, holds);
     for (std::size_t part = 0; part < asset.part_count(); ++part) {
       const auto is_joined = [&](std::size_t to) {
         return asset.part(part).parent == static_cast<std::int32_t>(to) ||
                asset.part(to).parent == static_cast<std::int32_t>(part);
       };
       const bool is_own = in_.are_one && (part == inner || is_joined(inner));
-      if (part == outer || (is_joined(outer) && !is_own)) {
+      bool is_around = holds[part];
+      for (std::size_t holder = 0; holder < asset.part_count(); ++holder) {
+        is_around = is_around || (holds[holder] && is_joined(holder));
+      }
+      if (part == outer || (is_around && !is_own)) {
         const Span<const TriangleRun> runs = runs_of(surface, part);
         std::copy(runs.begin(), runs.end(), memory_.around.data + count);
         count += runs.size;
@@ -329,8 +335,10 @@ class Measurer {
     return {memory_.around.data, count};
   }
 
-  // The way out of one that is inside, clear of all around it: nothing says which free place on the way is outside.
-  Exit parted(const TwoParts& parts, const Double3& previous) {
+  // Finds the way out of one that is inside, clear of all around it: nothing says which free place on the way is
+  // outside.
+  void part_them(TwoParts& parts) {
+    pose_all_skins();
     const Span<const TriangleRun> around = runs_around(parts);
     if (parts.b_is_inner) {
       sweep_.set_sides(around, runs_of(surface_b_, parts.b), parts.contour.center);
@@ -338,29 +346,20 @@ class Measurer {
       sweep_.set_sides(runs_of(surface_a_, parts.a), around, parts.contour.center);
     }
     sweep_.set_gap(kFar * height_);
-    const Exit out = parting_exit(sweep_, previous);
-    sweep_.set_gap(gap_);
-    return out;
-  }
-
-  // The greatest radius of the inner part's spheres: a shorter way frees the rim of a contact, but not the core.
-  double core_radius(const TwoParts& parts) const {
-    const Surface& surface = parts.b_is_inner ? surface_b_ : surface_a_;
-    const AssetView& asset = parts.b_is_inner ? *in_.b.asset : *in_.a.asset;
-    float radius = 0;
-    for (std::size_t s = 0; s < surface.sphere_parts.size; ++s) {
-      if (surface.sphere_parts[s] == (parts.b_is_inner ? parts.b : parts.a)) {
-        radius = std::max(radius, asset.spheres()[s].radius);
-      }
+    parts.way_apart = parting_exit(sweep_);
+    parts.apart = parts.way_apart.way.depth;
+    Double3 previous = previous_direction(parts);
+    if (normalize(previous)) {
+      parts.way_apart = steady_exit(sweep_, Contour(), {0, true}, parts.way_apart, previous);
     }
-    return (parts.b_is_inner ? scale_of_b() : scale_of_a()) * double{radius};
+    sweep_.set_gap(gap_);
   }
 
   Penetration measure_enclosed(TwoParts& parts) {
     if (in_.contacts.size == 0) {
       sweep_.clear();
     }
-    pose_all_skins();
+    part_them(parts);
     Double3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high = -1.0 * low;
     const PosedSkin& skin = parts.b_is_inner ? memory_.skins.b : memory_.skins.a;
     for (const TriangleRun& run : runs_of(*skin.surface, parts.b_is_inner ? parts.b : parts.a)) {
@@ -373,18 +372,18 @@ class Measurer {
     parts.contour.center = 0.5 * (low + high);
     parts.contour.rest_distance = HUGE_VAL;
     limits_ = &in_.limits;
-    Penetration out{};
-    out.part = static_cast<std::uint32_t>(parts.swaps ? parts.b : parts.a);
-    out.other = static_cast<std::uint32_t>(parts.swaps ? parts.a : parts.b);
-    out = describe(parts, parted(parts, previous_direction(parts, out)), {0, 0}, nullptr);
+    Penetration out = describe(parts, parts.way_apart, {0, 0}, nullptr);
     out.low = to_float(low);
     out.high = to_float(high);
     return out;
   }
 
-  Penetration measure(const TwoParts& parts) {
+  Penetration measure(TwoParts parts) {
     const Contour& contour = parts.contour;
     limits_ = was_fault(parts) ? &eased_ : &in_.limits;
+    if (parts.containment > 0) {
+      part_them(parts);
+    }
     set_sides(parts.all, contour.center, parts.a, parts.b);
     Exit exit = first_exit(sweep_, contour, kNear * height_);
     // All of the line is in sight, as far as its own sides do not hide it.
@@ -401,14 +400,9 @@ class Measurer {
     axes_of(contour, exit.direction, axes);
     // A contact that the quick measures alone class as no fault stays no fault: both forms must agree.
     Penetration out = describe(parts, exit, look(parts, axes), is_likely ? nullptr : &quick);
-    Double3 previous = previous_direction(parts, out);
+    Double3 previous = previous_direction(parts);
     if (is_fault(out.kind) && normalize(previous)) {
       set_way(parts, steady_exit(sweep_, contour, settings, exit, previous), out);
-    }
-    if (out.kind == SC_CLASS_INSIDE && !parts.passes_through && double{out.distance} < core_radius(parts)) {
-      set_way(parts, parted(parts, previous), out);
-      out.measures.depth = out.fault_depth = out.distance;
-      return out;
     }
     if (!in_.quick) {
       out.measures.volume = volume_of(parts, exit);
@@ -445,7 +439,9 @@ class Measurer {
     const Contour& contour = parts.contour;
     Penetration out{};
     set_way(parts, exit, out);
-    out.measures = {out.distance,
+    // The nearer a part is to being inside, the less it is out once just its contact is gone.
+    const double more = std::max(parts.apart - exit.way.depth, 0.0);
+    out.measures = {least_depth(exit.way.depth + parts.containment * more),
                     -1,
                     static_cast<float>(contour.length),
                     static_cast<float>(seen.share),
@@ -468,7 +464,7 @@ class Measurer {
                       &b = parts.swaps ? out.deepest : out.deepest_other;
       const double thin = thickness_of(parts, exit.direction, a.position, b.position);
       out.measures.thickness = static_cast<float>(thin);
-      out.measures.extent = static_cast<float>(double{out.distance} / thin * seen.length / parts.side);
+      out.measures.extent = static_cast<float>(double{out.measures.depth} / thin * seen.length / parts.side);
     }
     out.kind = sc_classify(limits_, &out.measures);
     out.fault_depth = fault_depth_of(in_.limits, out.measures);
@@ -482,10 +478,15 @@ class Measurer {
     return out;
   }
 
-  // An exit moves b.
-  void set_way(const TwoParts& parts, const Exit& exit, Penetration& out) const {
-    // Triangles that just touch are clear of each other after any move: the least there is.
-    out.distance = std::max(static_cast<float>(exit.way.depth), static_cast<float>(1e-7 * height_));
+  // Triangles that just touch are clear of each other after any move: the least there is.
+  float least_depth(double depth) const {
+    return std::max(static_cast<float>(depth), static_cast<float>(1e-7 * height_));
+  }
+
+  // An exit moves b. A part that is more inside than not parts from all around it, where that is farther.
+  void set_way(const TwoParts& parts, const Exit& of_contact, Penetration& out) const {
+    const Exit& exit = parts.containment >= 0.5 && parts.apart > of_contact.way.depth ? parts.way_apart : of_contact;
+    out.distance = least_depth(exit.way.depth);
     out.direction = to_float(parts.swaps ? exit.direction : -1.0 * exit.direction);
     const bool meet = parts.contour.segments.size > 0;
     const std::uint32_t any_a = meet ? parts.contour.segments[0].a : runs_of(surface_a_, parts.a)[0].first;
@@ -526,9 +527,10 @@ class Measurer {
   }
 
   // In which the last frame moved part b out of a fault; zero where there is none.
-  Double3 previous_direction(const TwoParts& parts, const Penetration& of) const {
+  Double3 previous_direction(const TwoParts& parts) const {
     for (const Penetration& last : in_.previous) {
-      if (last.part == of.part && last.other == of.other && is_fault(last.kind)) {
+      if (last.part == (parts.swaps ? parts.b : parts.a) && last.other == (parts.swaps ? parts.a : parts.b) &&
+          is_fault(last.kind)) {
         return (parts.swaps ? 1.0 : -1.0) * to_double(last.direction);
       }
     }

@@ -18,7 +18,7 @@ struct MeasureJob {
   // both forms find the same faults.
   std::int32_t quick = 0;
   const Rule* rule = nullptr;  // null: sc_default_rule()
-  // The part that holds each sphere's centre, as find_inside() says it, for the body or for both; null: not known.
+  // The part that holds each probe, as find_inside() says it, for the body or for both; null: not known.
   const std::uint16_t* inside_a = nullptr;
   const std::uint16_t* inside_b = nullptr;
   // 1: also parts that are inside another which they have no contact with: not those in `met`, all pairs of parts that

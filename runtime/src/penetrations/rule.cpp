@@ -52,11 +52,8 @@ double fold_closeness(const Rule& rule, const Measures& of) {
 // From 0 at the limit to 1 at twice the limit.
 double share_above(double value, double limit) { return limit > 0 ? std::clamp(value / limit - 1, 0.0, 1.0) : 1.0; }
 
-// How near the part is to being inside: from 0 at three quarters of the share that makes it so, to 1.
-double almost_inside(const Rule& rule, const Measures& of) {
-  return of.through != 0 || !(rule.inside > 0)
-             ? 1
-             : std::clamp(4 * double{of.swallowed} / double{rule.inside} - 3, 0.0, 1.0);
+double containment_of(const Rule& rule, const Measures& of) {
+  return spherechain::containment_of(rule, double{of.swallowed});
 }
 
 // The depths up to which an intersection is no fault, by the reason.
@@ -80,15 +77,15 @@ Allowed allowed(const Rule& rule, const Measures& of) {
     const double most = double{rule.touch_times} * out.touch;
     out.thin = of.extent > 0 ? std::min(most, double{of.depth} * double{rule.extent} / double{of.extent}) : most;
   }
-  const double share = 1 - almost_inside(rule, of);
+  const double share = 1 - containment_of(rule, of);
   return {share * out.shell, share * out.touch, share * out.fold, share * out.thin};
 }
 
 PenetrationClass classify(const Rule& rule, const Measures& of) {
-  if (of.swallowed >= rule.inside || of.through != 0) {
+  if (of.swallowed >= rule.inside) {
     return SC_CLASS_INSIDE;
   }
-  const bool is_out = almost_inside(rule, of) == 0;
+  const bool is_out = containment_of(rule, of) == 0;
   if (is_out && of.touching >= rule.at_rest) {
     return SC_CLASS_REST;
   }
@@ -105,6 +102,9 @@ PenetrationClass classify(const Rule& rule, const Measures& of) {
   }
   if (depth < up_to.thin) {
     return SC_CLASS_TOUCH;
+  }
+  if (of.through != 0) {
+    return SC_CLASS_INSIDE;
   }
   return of.is_one_piece != 0 && fold_closeness(rule, of) > 0.5 ? SC_CLASS_DEEP_FOLD : SC_CLASS_PENETRATION;
 }
@@ -123,6 +123,10 @@ Status check_rule(const sc_rule* rule) {
                                                                                   : refuse(SC_BAD_VALUE, SC_FIELD_RULE);
 }
 
+double containment_of(const Rule& rule, double swallowed) {
+  return !(rule.inside > 0) ? 1 : std::clamp(4 * swallowed / double{rule.inside} - 3, 0.0, 1.0);
+}
+
 double touch_depth_of(const Rule& rule, double metre, double height) {
   return rule.touch_depth > 0 ? double{rule.touch_depth}
                               : std::min(std::max(double{rule.touch_metres} * metre, double{rule.touch_min} * height),
@@ -132,7 +136,7 @@ double touch_depth_of(const Rule& rule, double metre, double height) {
 float fault_depth_of(const Rule& rule, const Measures& of) {
   const double seen = share_above(double{of.visible}, double{rule.hidden}) *
                       share_above(1 - double{of.touching}, 1 - double{rule.at_rest});
-  return static_cast<float>(std::max(seen, almost_inside(rule, of)) *
+  return static_cast<float>(std::max(seen, containment_of(rule, of)) *
                             std::max(double{of.depth} - allowed(rule, of).most(), 0.0));
 }
 

@@ -15,6 +15,8 @@ double touch_depth_of(const Rule& rule, double metre, double height);
 double fold_depth_of(const Rule& rule, const Measures& of);
 // sc_penetration.fault_depth.
 float fault_depth_of(const Rule& rule, const Measures& of);
+// How near a part is to being inside another: from 0 at three quarters of the share that makes it so, to 1.
+double containment_of(const Rule& rule, double swallowed);
 // The rule for two parts that were a fault a frame ago: a fault goes on until it is clearly none.
 Rule eased(Rule rule);
 // Does class or fault depth depend on `extent`, which is the dearest to measure?

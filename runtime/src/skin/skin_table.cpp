@@ -72,6 +72,8 @@ std::size_t lay_out(const AssetView& asset, std::uint64_t* words, Surface& out, 
   memory.take(out.facings, sizes.triangles);
   memory.take(out.rest_windings, 3 * asset.spheres().size);
   memory.take(out.sphere_parts, asset.spheres().size);
+  memory.take(out.core_triangles, kCorePoints * asset.part_count());
+  memory.take(out.core_windings, 3 * kCorePoints * asset.part_count());
   memory.take(vertices.windings.next, sizes.triangles);
   memory.take(vertices.windings.first_of_corner, sizes.vertices);
   memory.take(vertices.windings.pieces, sizes.vertices);

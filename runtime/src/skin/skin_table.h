@@ -93,6 +93,9 @@ struct Surface {
   Span<std::int8_t> facings;        // of each triangle: -1 of a piece that is inside out at rest; 0: it does not count
   Span<std::int8_t> rest_windings;  // around each sphere's centre at rest, as counted along x, y and z
   Span<std::uint8_t> sphere_parts;  // the part that most of a sphere's triangles are of
+  // kCorePoints of each part: see core_point().
+  Span<std::uint32_t> core_triangles;  // kNoPlace where no skin encloses the point at rest
+  Span<std::int8_t> core_windings;     // around each at rest, along x, y and z
 
   // The asset's own.
   Span<const float> rest_positions;             // x, y, z of each vertex
@@ -104,6 +107,13 @@ struct Surface {
   Span<const BallLanes> bounds_morphs;             // around the deltas of a cluster's vertices
   Span<const HullBone> hull_bones;                 // of hull after hull
 };
+
+inline Span<const TriangleRun> runs_of(const Surface& surface, std::size_t part) {
+  const std::uint32_t first = surface.first_of_part[part];
+  return {surface.part_runs.data + first, surface.first_of_part[part + 1] - first};
+}
+
+inline constexpr std::size_t kCorePoints = 128;
 
 // Hands out arrays of a caller's words, each from a cache line on, and with a line to spare: vectors of any target may
 // be read and written that far past its end. With null words it only counts how many there have to be.

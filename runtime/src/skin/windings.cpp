@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "runtime/src/base/double3.h"
+#include "runtime/src/skin/core_point.h"
 #include "runtime/src/triangles/crossing.h"
 
 namespace spherechain {
@@ -134,6 +135,54 @@ int winding_at_rest(const Surface& surface, const float (&from)[3], std::size_t 
   return std::max(-127, std::min(out, 127));
 }
 
+int middle_of(const std::int8_t* of) {
+  return std::max(std::min(of[0], of[1]), std::min(std::max(of[0], of[1]), of[2]));
+}
+
+// Around a point at rest, along each axis; or along one, where the skin is closed there.
+void find_windings_of(const Surface& surface, const Vec3& point, bool is_closed, std::int8_t* out) {
+  const float from[3] = {point.x, point.y, point.z};
+  for (std::size_t axis = is_closed ? kShortAxis : 0; axis < 3; ++axis) {
+    out[axis] = static_cast<std::int8_t>(winding_at_rest(surface, from, axis));
+  }
+  if (is_closed) {
+    out[0] = out[1] = out[kShortAxis];
+  }
+}
+
+// Spreads core points over a part's skin by its area.
+void find_core(const AssetView& asset, const Surface& surface, std::size_t part) {
+  const Span<const TriangleRun> runs = runs_of(surface, part);
+  const auto for_triangles = [&](const auto& visit) {
+    for (const TriangleRun& run : runs) {
+      for (std::uint32_t t = run.first; t < run.first + run.count; ++t) {
+        float at[3][3];
+        corners_at_rest(surface, t, at);
+        Double3 p[3];
+        for (std::size_t k = 0; k < 3; ++k) {
+          p[k] = {double{at[k][0]}, double{at[k][1]}, double{at[k][2]}};
+        }
+        visit(t, at, length(cross(p[1] - p[0], p[2] - p[0])));
+      }
+    }
+  };
+  double all = 0, before = 0;
+  for_triangles([&](std::uint32_t, const float(&)[3][3], double area) { all += area; });
+  std::size_t k = 0;
+  for_triangles([&](std::uint32_t t, const float(&at)[3][3], double area) {
+    before += area;
+    for (; k < kCorePoints && before * double{kCorePoints} > (static_cast<double>(k) + 0.5) * all; ++k) {
+      const std::size_t place = kCorePoints * part + k;
+      std::int8_t* const windings = surface.core_windings.data + 3 * place;
+      const std::size_t sphere = surface.triangle_spheres[t];
+      const std::int8_t* const around = surface.rest_windings.data + 3 * sphere;
+      const bool is_closed = around[0] == around[1] && around[1] == around[2];
+      find_windings_of(surface, core_point(at, asset.spheres()[sphere].center, k), is_closed, windings);
+      surface.core_triangles[place] = middle_of(windings) > 0 ? t : kNoPlace;
+    }
+  });
+}
+
 // The part that most of a sphere's triangles are of.
 std::uint8_t part_of(const Surface& surface, std::size_t sphere, std::uint32_t (&counts)[256]) {
   std::fill(counts, counts + 256, 0U);
@@ -158,12 +207,12 @@ void find_windings(const AssetView& asset, const Surface& surface, const Winding
   turn_pieces(surface, scratch.pieces);
   std::uint32_t counts[256];
   for (std::size_t s = 0; s < asset.spheres().size; ++s) {
-    const Vec3& center = asset.spheres()[s].center;
-    const float from[3] = {center.x, center.y, center.z};
     surface.sphere_parts[s] = part_of(surface, s, counts);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      surface.rest_windings[3 * s + axis] = static_cast<std::int8_t>(winding_at_rest(surface, from, axis));
-    }
+    find_windings_of(surface, asset.spheres()[s].center, false, surface.rest_windings.data + 3 * s);
+  }
+  std::fill(surface.core_triangles.begin(), surface.core_triangles.end(), kNoPlace);
+  for (std::size_t part = 0; part < asset.part_count(); ++part) {
+    find_core(asset, surface, part);
   }
 }
 

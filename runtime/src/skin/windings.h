@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
-// How often the skin winds around the spheres' centres at rest, and which triangles count for it.
+// How often the skin winds around the spheres' centres and around core points at rest, and which triangles count for
+// it.
 #pragma once
 
 #include "runtime/src/skin/skin_table.h"
 
 namespace spherechain {
+
+constexpr std::size_t kShortAxis = 2;  // most characters stand along y, and are thinnest along z
 
 // Memory while the windings are found.
 struct PieceSum {
@@ -16,7 +19,7 @@ struct WindingScratch {
   Span<PieceSum> pieces;                // a vertex'
 };
 
-// Fills Surface::facings, rest_windings and sphere_parts, from a table that is filled but for these.
+// Fills from Surface::facings on, from a table that is filled but for these.
 void find_windings(const AssetView& asset, const Surface& surface, const WindingScratch& scratch);
 
 }  // namespace spherechain
