@@ -15,6 +15,7 @@
 #include "baker/mesh/error.h"
 #include "baker/os/written_file.h"
 #include "baker/pipeline/pipeline.h"
+#include "baker/play/play.h"
 #include "baker/report/report.h"
 #include "baker/volumes/fit_volumes.h"
 #include "baker/volumes/measure.h"
@@ -50,10 +51,6 @@ const ExportFormat kExportFormats[] = {
 const ExportFormat& format_of(const std::string& name) {
   return *std::find_if(std::begin(kExportFormats), std::end(kExportFormats),
                        [&](const ExportFormat& format) { return format.name == name; });
-}
-
-BakeSettings settings_of(const OpenAsset& asset, const std::string& file) {
-  return make_settings("balanced", asset->info().settings, file);
 }
 
 SourceGlb read_source_glb(const OpenAsset& asset, const ExportOptions& options) {

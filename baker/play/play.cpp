@@ -20,11 +20,6 @@ namespace {
 
 Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
 
-// Settings that the asset was baked with: others would read other vertices, or close another body.
-BakeSettings settings_of(const OpenAsset& asset, const std::string& file) {
-  return make_settings("balanced", asset->info().settings, file);
-}
-
 // Throws Error(kFile) where frames are too many to look at each.
 void check_count(const MotionFrames& frames, const std::string& file) {
   const ClipFrames* longest = nullptr;
@@ -41,6 +36,14 @@ void check_count(const MotionFrames& frames, const std::string& file) {
 }
 
 }  // namespace
+
+BakeSettings settings_of(const OpenAsset& asset, const std::string& file) {
+  try {
+    return make_settings("balanced", asset->info().settings, file);
+  } catch (const Error& error) {
+    throw Error(error.code(), std::string(error.what()) + " (bake it again)");
+  }
+}
 
 std::string MotionChoice::name() const {
   if (!poses.empty()) return std::filesystem::path(poses).filename().string();

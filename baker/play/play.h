@@ -17,6 +17,8 @@
 
 namespace spherechain::baker {
 
+struct BakeSettings;
+
 // The motion to play: at most one. If empty: all clips in the source, or the rest pose if it has none.
 struct MotionChoice {
   std::string poses;   // a pose file, or whole meshes that are poses (motion/sequence.h)
@@ -98,6 +100,9 @@ class AnimatedAsset {
   MotionFrames frames_;
   double fps_;
 };
+
+// Settings that the asset was baked with: others would read other vertices, or close another body.
+BakeSettings settings_of(const OpenAsset& asset, const std::string& file);
 
 // Millimetres in one of the source's units.
 double mm_per_unit(const OpenAsset& asset);

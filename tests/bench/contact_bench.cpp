@@ -138,6 +138,9 @@ class ContactBench {
         out.goals.push_back({"P10 " + own.of.finder->name + ": mean over the contacts' own", "x",
                              own.mean.median / from_bones->mean.median, 5, false});
       }
+      if (own.of.finder->name.find("inside") != std::string::npos) {
+        out.goals.push_back({"P10 " + own.of.finder->name + ": mean", "us", own.mean.median / 1e3, 20, false});
+      }
       if (own.of.kind != Kind::kProduct) continue;
       const auto goal = [&](const std::string& what, const char* unit, double reached, double wanted, bool at_least) {
         out.goals.push_back({"P6 " + own.of.finder->name + ": " + what, unit, reached, wanted, at_least});

@@ -2,7 +2,11 @@
 #include <stdexcept>
 
 #include "contact_finder.h"
+#include "runtime/src/inside/inside_job.h"
+#include "runtime/src/pairs/detect_job.h"
 #include "runtime/src/penetrations/penetration_jobs.h"
+#include "runtime/src/refit/refit_job.h"
+#include "runtime/src/simd/simd.h"
 
 namespace spherechain::bench {
 namespace {
@@ -115,6 +119,53 @@ class DepthFinder : public ContactFinder {
   PenetrationJob job_;
 };
 
+// The parts that are inside others, from bones: with the refit and the pairs of spheres, which the test begins with.
+class InsideFinder : public ContactFinder {
+ public:
+  InsideFinder(const ContactMesh& mesh, const std::string& name)
+      : ContactFinder(name),
+        finder_(mesh, name, Output::kTriangles, false, true),
+        spheres_(mesh.character.view().spheres().size),
+        pairs_(spheres_.size() * spheres_.size() / 2),
+        scratch_(memory_for(inside_scratch_words(mesh.character.view(), mesh.character.view()))),
+        part_(probe_count(mesh.character.view())) {
+    refit_.asset = detect_.asset = inside_.body.asset = inside_.skin.asset = &mesh.character.asset;
+    refit_.spheres = spheres_.data();
+    refit_.sphere_capacity = detect_.sphere_count = spheres_.size();
+    detect_.spheres = spheres_.data();
+    detect_.pairs = pairs_.data();
+    detect_.pair_capacity = pairs_.size();
+    inside_.body.skin_table = inside_.skin.skin_table = mesh.skin_table.data()->words;
+    inside_.target = supported_targets()[0];
+    inside_.centers = {spheres_.data(), spheres_.size()};
+    inside_.scratch = scratch_.data()->words;
+    inside_.part = {part_.data(), part_.size()};
+  }
+
+  void find(const ContactPose& pose) override {
+    pose_ = &pose;
+    refit_.pose = inside_.body.pose = inside_.skin.pose = pose.bones;
+    if (!(refit_.run() == SC_OK && detect_.run() == SC_OK)) throw std::runtime_error(name + ": fails");
+    inside_.pairs = {pairs_.data(), detect_.pair_count};
+    inside_.run();
+  }
+  std::vector<Pair> pairs() override {
+    finder_.find(*pose_);
+    return finder_.pairs();
+  }
+
+ private:
+  RuntimeFinder finder_;
+  std::vector<Sphere> spheres_;
+  std::vector<Pair> pairs_;
+  Memory scratch_;
+  std::vector<std::uint16_t> part_;
+  RefitJob refit_;
+  DetectJob detect_;
+  InsideJob inside_;
+  const ContactPose* pose_ = nullptr;
+};
+
 ContactFinders runtime_finders(const ContactMesh& mesh, const std::string& name, Output output) {
   ContactFinders out;
   out.push_back(std::make_unique<RuntimeFinder>(mesh, name + " from vertices", output, true, false));
@@ -136,6 +187,7 @@ ContactFinders runtime_depth_finders(const ContactMesh& mesh) {
   ContactFinders out;
   out.push_back(std::make_unique<DepthFinder>(mesh, "spherechain depth from bones", false));
   out.push_back(std::make_unique<DepthFinder>(mesh, "spherechain depth from bones, quick", true));
+  out.push_back(std::make_unique<InsideFinder>(mesh, "spherechain inside from bones"));
   return out;
 }
 

@@ -128,6 +128,11 @@ void axes_of(const Contour& contour, const Double3& direction, Double3 (&axes)[3
     axes[1] = View(direction, contour.center).u;
   }
   axes[2] = cross(axes[0], axes[1]);
+  // In a mirrored pose the axes are mirrored, too, and so is what is found along them.
+  const double along[2] = {dot(axes[2], contour.normals), dot(axes[2], contour.largest_area)};
+  if (along[std::abs(along[0]) > std::abs(along[1]) ? 0 : 1] < 0) {
+    axes[2] = -1.0 * axes[2];
+  }
 }
 
 namespace {
