@@ -152,7 +152,7 @@ namespace Spherechain
         DeepFold = 4,
         /// <summary>everything else: a fault</summary>
         Penetration = 5,
-        /// <summary>the middle of the one part is inside the other, or goes through it: a fault</summary>
+        /// <summary>the middle of the one part is inside the other, or a fault goes through it</summary>
         Inside = 6,
     }
 
@@ -268,9 +268,9 @@ namespace Spherechain
         public Relation Relation;
         /// <summary>1: the two spots are of one piece of skin</summary>
         public int IsOnePiece;
-        /// <summary>0 to 1: of the spheres' centres of `part` the share that is inside `other`; where that holds most of them, inside any part. 0 where they were not looked at</summary>
+        /// <summary>0 to 1: of points in the middle of `part` the share that is inside `other`; where that holds most of them, inside any part. 0 while no centre of its spheres is inside</summary>
         public float Swallowed;
-        /// <summary>1: some of `part` is inside, and its limb comes out again on the other side</summary>
+        /// <summary>1: a sphere's centre is inside, and its limb comes out again on the other side</summary>
         public int Through;
     }
 
@@ -341,9 +341,9 @@ namespace Spherechain
         public uint Joint;
         public PenetrationClass Kind;
         public Vec3 Direction;
-        /// <summary>how much deeper than the rule allows, the less the less of it can be seen; 0: not deeper. It is continuous in `measures`, where `through` is 0, and does not depend on `previous`</summary>
+        /// <summary>how much deeper than the rule allows, the less the less of it can be seen; 0: not deeper. It is continuous in `measures`, and does not depend on `previous`</summary>
         public float FaultDepth;
-        /// <summary>measures.depth; up to 1.5 times as much where `previous` keeps the direction</summary>
+        /// <summary>measures.depth, but for a part that is about half inside; up to 1.5 times as much where `previous` keeps the direction</summary>
         public float Distance;
         /// <summary>of the line where the parts cross; of the ground: of the box</summary>
         public Vec3 Centre;

@@ -12,7 +12,7 @@ const [chromium, packageFolder, reference, asset, palettes] = process.argv.slice
 const server = await serve('.');
 const page = await visit(chromium, `${server.url}/index.html`);
 const lines = await page.wait("document.querySelector('.fault') && [...document.querySelectorAll('.fault')].map(line => line.textContent)");
-assert.ok(lines.includes('left forearm in abdomen: 24 mm, inside'), lines.join('\n'));
+assert.ok(lines.includes('left forearm in abdomen: 80 mm, inside'), lines.join('\n'));
 // The picture has the skin and red triangles on it.
 const count = `(() => {
   const source = document.querySelector('canvas'), copy = new OffscreenCanvas(source.width, source.height).getContext('2d');
