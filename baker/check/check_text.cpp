@@ -19,8 +19,8 @@ std::string marks(const EvaluatedEvent& evaluated) {
   const PenetrationClass kind = evaluated.event.kind;
   if (kind == SC_CLASS_DEEP_FOLD) add("deep fold");
   if (kind == SC_CLASS_INSIDE) {
-    add(fmt::format("{:.0f} % inside{}", 100 * evaluated.event.swallowed,
-                    evaluated.event.passes_through ? " and out again" : ""));
+    add(fmt::format("{}{:.0f} % inside", evaluated.event.passes_through ? "goes through, " : "",
+                    100 * evaluated.event.swallowed));
   }
   if (!is_fault(kind)) add(kind == SC_CLASS_REST ? "as at rest" : sc_penetration_class_name(kind));
   if (evaluated.before_mm >= 0) add(worse_text(evaluated));
@@ -63,8 +63,10 @@ std::string parts_text(const Event& event) {
 
 std::string frames_text(const Event& event) {
   if (event.from == event.to) return "frame " + frame_text(event.from);
-  return fmt::format("frames {}-{}{}", frame_text(event.from), frame_text(event.to),
-                     event.from > event.to ? " (over the loop)" : "");
+  const auto faulty = std::count_if(event.depths_mm.begin(), event.depths_mm.end(), [](float d) { return d > 0; });
+  const bool is_all = faulty == 0 || faulty == static_cast<std::ptrdiff_t>(event.depths_mm.size());
+  return fmt::format("frames {}-{}{}{}", frame_text(event.from), frame_text(event.to),
+                     event.from > event.to ? " (over the loop)" : "", is_all ? "" : fmt::format(", {} faulty", faulty));
 }
 
 std::string worse_text(const EvaluatedEvent& evaluated) {

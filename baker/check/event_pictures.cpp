@@ -34,11 +34,14 @@ std::vector<std::string> draw_events(const AnimatedAsset& animated, const ClipFr
     Event& event = found.events[i];
     if (!is_fault(event.kind)) continue;
     picture.pose(animated.positions(animated.deformation(clip.first + event.place)));
-    const Patches patches = patches_of(event, found.contacts[found.spans[i].deepest]);
-    event.eye = picture.find_eye(patches);
+    const std::vector<TrianglePair>& contacts = found.contacts[found.spans[i].deepest];
+    // A part that is wholly inside has no contact. A person sees that it is missing.
+    const bool is_gone = contacts.empty();
+    const Patches patches = is_gone ? Patches{} : patches_of(event, contacts);
+    event.eye = is_gone ? picture.forward() : picture.find_eye(patches);
     if (deepest[{event.parts[0], event.parts[1], event.kind}] != &event) continue;
     event.picture = static_cast<int>(out.size());
-    out.push_back(picture.png(&patches, *event.eye));
+    out.push_back(picture.png(is_gone ? nullptr : &patches, *event.eye));
   }
   return out;
 }

@@ -16,7 +16,7 @@ namespace spherechain::baker {
 // Two patches of a posed skin that intersect.
 struct Patches {
   std::array<std::vector<std::uint32_t>, 2> triangles;  // of each part; source numbers
-  Vec3 point;                                           // the middle of the patches
+  Vec3 point = Vec3::Zero();                            // the middle of the patches
   Vec3 way = Vec3::Zero();                              // direction out of the contact
 };
 

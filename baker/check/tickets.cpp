@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
-#include <set>
 #include <tuple>
 
 #include "baker/check/formats.h"
@@ -99,32 +99,44 @@ class Grouping {
   const Event& event(const Ticket::Shown& shown) const { return clips_[shown.clip].events[shown.event].event; }
   double severity_of(const Ticket::Shown& shown) const { return severity(event(shown), clips_[shown.clip].fps); }
 
-  // Limbs that an event's parts belong to.
-  static std::set<std::string> limbs(const Event& event, const CharacterResult& character) {
-    std::set<std::string> out;
+  static std::string limb_of(const std::string& part, const CharacterResult& character) {
     for (std::size_t i = 0; i < std::min(character.parts.size(), character.limbs.size()); ++i) {
-      const bool is_one = character.parts[i] == event.parts[0] || character.parts[i] == event.parts[1];
-      if (is_one && !character.limbs[i].empty()) out.insert(character.limbs[i]);
+      if (character.parts[i] == part) return character.limbs[i];
     }
-    return out;
+    return {};
   }
 
+  bool overlap(std::size_t a, std::size_t b) const {
+    const Event &one = event(open_[a]), &other = event(open_[b]);
+    const double end = clips_[open_[a].clip].frames;
+    return shared_frames(one, other, end) * 2 > std::min(frames_of(one, end), frames_of(other, end));
+  }
+
+  // The worst event that is left makes a group with its repeats, and with what its limb does meanwhile.
   void join_within(std::size_t clip, const CharacterResult& character) {
-    std::map<Parts, std::size_t> same;
-    std::map<std::string, std::vector<std::size_t>> of_limb;
-    for (std::size_t i = first_[clip]; i < first_[clip + 1]; ++i) {
-      groups_.join(i, same.try_emplace(unordered(event(open_[i]).parts), i).first->second);
-      for (const std::string& limb : limbs(event(open_[i]), character)) of_limb[limb].push_back(i);
-    }
-    const double end = clips_[clip].frames;
-    for (const auto& [limb, events] : of_limb) {
-      for (std::size_t a = 0; a < events.size(); ++a) {
-        for (std::size_t b = 0; b < a; ++b) {
-          const Event &one = event(open_[events[a]]), &other = event(open_[events[b]]);
-          const double shorter = std::min(frames_of(one, end), frames_of(other, end));
-          if (shared_frames(one, other, end) * 2 > shorter) groups_.join(events[a], events[b]);
-        }
-      }
+    std::vector<std::size_t> left(first_[clip + 1] - first_[clip]);
+    std::iota(left.begin(), left.end(), first_[clip]);
+    std::stable_sort(left.begin(), left.end(),
+                     [&](std::size_t a, std::size_t b) { return severity_of(open_[a]) > severity_of(open_[b]); });
+    while (!left.empty()) {
+      const std::size_t worst = left.front();
+      const auto is_repeat = [&](std::size_t i) {
+        return unordered(event(open_[i]).parts) == unordered(event(open_[worst]).parts);
+      };
+      std::vector<std::size_t> repeats;
+      std::copy_if(left.begin(), left.end(), std::back_inserter(repeats), is_repeat);
+      const auto is_meanwhile = [&](std::size_t i) {
+        return std::any_of(repeats.begin(), repeats.end(), [&](std::size_t of) {
+          const Parts &parts = event(open_[of]).parts, &own = event(open_[i]).parts;
+          const std::string limb = limb_of(parts[0], character);
+          const bool has_limb = limb_of(own[0], character) == limb || limb_of(own[1], character) == limb;
+          return !limb.empty() && has_limb && overlap(of, i);
+        });
+      };
+      const auto rest = std::stable_partition(left.begin(), left.end(),
+                                              [&](std::size_t i) { return is_repeat(i) || is_meanwhile(i); });
+      std::for_each(left.begin(), rest, [&](std::size_t i) { groups_.join(i, worst); });
+      left.erase(left.begin(), rest);
     }
   }
 
@@ -213,8 +225,8 @@ std::vector<std::string> limbs_of(const std::vector<BodyPart>& parts) {
 
 double severity(const Event& event, double fps) {
   const double inside = event.kind == SC_CLASS_INSIDE ? kInsidePercent * event.swallowed : 0;
-  const double frames =
-      event.from <= event.to ? event.to - event.from + 1 : static_cast<double>(event.depths_mm.size());
+  const auto faulty = std::count_if(event.depths_mm.begin(), event.depths_mm.end(), [](float d) { return d > 0; });
+  const double frames = faulty > 0 ? static_cast<double>(faulty) : event.to - event.from + 1;
   const double seconds = std::clamp(frames / fps, kSecondsMin, kSecondsMax);
   return (event.depth_percent + inside) * (event.eye ? 1 : kUnseen) * std::sqrt(seconds);
 }

@@ -15,12 +15,14 @@ namespace spherechain::baker {
 std::vector<std::string> limbs_of(const std::vector<BodyPart>& parts);
 
 // An event's depth in percent of the height, and 20 more times the share that is inside where a part is inside another;
-// a quarter of that where no eye sees it; times the root of its seconds, which count from .1 to 4.
+// a quarter of that where no eye sees it; times the root of the seconds in which it is a fault, which count from .1
+// to 4.
 double severity(const Event& event, double fps);
 
-// Groups the open events that one cause probably has: those of the same two parts, or of the mirrored ones, in a clip;
-// those of one limb in a clip that overlap for most of the shorter one's time; those of clips whose events are equal.
-// `characters` has a result for each CheckedClip::character_key. Returns the worst first.
+// Groups the open events that one cause probably has: in a clip the worst event, its repeats by the same two parts or
+// the mirrored ones, and those of the limb that goes in that overlap with one of them for most of the shorter one's
+// time; then the worst event that is left. Events of clips whose events are equal go together. `characters` has a
+// result for each CheckedClip::character_key. Returns the worst first.
 std::vector<Ticket> find_tickets(const std::vector<EvaluatedClip>& clips,
                                  const std::map<std::string, CharacterResult>& characters);
 

@@ -140,6 +140,11 @@ void AnimatedAsset::play_poses(const std::string& file) {
     motion_ = std::make_unique<BezierMotion>(joints, frame(), read_pose_motion(file, joints, rig.morphs), rig.morphs);
     return use_skin();
   }
+  if (!character_.rig.bones.empty()) {
+    throw Error(ExitCode::kFile, file + ": turns the joints of the automatic rig, and " + asset_name_ +
+                                     " moves with the character's own skeleton (write \"rig\": \"own\" beside the " +
+                                     "poses, and turn the joints of that one)");
+  }
   const std::vector<Joint> joints = joints_of(file_);
   if (joints.empty()) {
     throw Error(ExitCode::kFile, file + ": turns the joints of a biped, and " + asset_name_ +

@@ -156,8 +156,8 @@ std::string PartContacts::rows(const Clip& clip) const {
     const char* unit = runs.size() == 1 && runs[0].first == runs[0].second ? "frame " : "frames ";
     const std::string what = contact.kind == SC_CLASS_DEEP_FOLD ? "deep fold, "
                              : contact.kind == SC_CLASS_INSIDE
-                                 ? fmt::format("{:.0f} % inside{}, ", 100 * contact.swallowed,
-                                               contact.passes_through ? " and out again" : "")
+                                 ? fmt::format("{}{:.0f} % inside, ", contact.passes_through ? "goes through, " : "",
+                                               100 * contact.swallowed)
                                  : "";
     const auto& [x, y, z] = contact.direction;
     cells.push_back({name(first), first == second ? "itself" : name(second), unit + runs_text(runs),

@@ -8,7 +8,7 @@ export const MEANINGS = [
   'Neighbours of a joint that bends, or spots that lie close at rest.',
   'A joint whose skin is far inside itself. A fault.',
   'One part goes into another. A fault.',
-  'Most of one part is inside another. A fault. It may come out again on the other side.',
+  'Most of one part is inside another, or it goes through it. A fault.',
 ];
 const SHELL = 1;
 const HIDDEN = 0.3; // less of the contour is visible
@@ -31,8 +31,8 @@ function measured(list, width) {
 
 // A shell is either clothes or out of sight.
 export const isHidden = ({ kind, visible }) => kind === SHELL && visible >= 0 && visible < HIDDEN;
-// "inside 60 %, comes out again": how much of the first part is in the second.
-export const insideText = ({ swallowed, through }) => `inside${swallowed > 0 ? ` ${Math.round(100 * swallowed)} %` : ''}${through ? ', comes out again' : ''}`;
+// "goes through, inside 60 %": how much of the first part is in the second.
+export const insideText = ({ swallowed, through }) => `${through ? 'goes through, ' : ''}inside${swallowed > 0 ? ` ${Math.round(100 * swallowed)} %` : ''}`;
 export const className = (contact) => (isHidden(contact) ? 'hidden' : contact.kind === INSIDE ? insideText(contact) : CLASSES[contact.kind]);
 export const isFault = ({ kind }) => kind >= DEEP_FOLD;
 export const millimetres = (depth) => `${depth < 9.95 ? depth.toFixed(1) : Math.round(depth)} mm`;
