@@ -100,4 +100,13 @@ struct FilterOptions {
 };
 ExitCode run_filter(const FilterOptions& options);
 
+struct MaskOptions {
+  std::string input, output, as = "triangles", character;
+  std::vector<std::string> motions;
+  double margin = 0.3;  // % of the height
+  bool force = false;
+};
+ExitCode run_mask(const MaskOptions& options);
+std::vector<std::string> mask_forms();
+
 }  // namespace spherechain::baker

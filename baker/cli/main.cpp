@@ -273,6 +273,29 @@ int main(int argc, char** argv) {
   add_output(*filter_command, "-o,--output", filter.output, "JSON file to write");
   filter_command->callback([&] { run = [&] { return run_filter(filter); }; });
 
+  MaskOptions mask;
+  CLI::App* mask_command = app.add_subcommand("mask", "Find the skin below clothes that no clip shows, and hide it");
+  add_name(*mask_command, "CHARACTER", mask.input, "Character: glTF, or anything assimp reads")->required();
+  add_output(*mask_command, "-o,--output", mask.output, "The character to write (.glb, .vrm), or the mask (.json)")
+      ->required();
+  mask_command
+      ->add_option("--motion", mask.motions,
+                   "Recording (BVH, FBX, Collada, glTF) to look at besides the character's own clips; may be repeated")
+      ->check(refuse_empty)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  mask_command
+      ->add_option("--margin", mask.margin, "Skin that is as near to skin that is seen stays, in % of the height")
+      ->check(CLI::Range(0.0, 10.0))
+      ->check(refuse_nan)
+      ->capture_default_str();
+  mask_command->add_option("--as", mask.as, "Without the hidden triangles, or with a mask")
+      ->check(CLI::IsMember(mask_forms()))
+      ->capture_default_str();
+  add_character(*mask_command, mask.character);
+  mask_command->add_flag("--force", mask.force, "Replace an output file of another kind");
+  mask_command->callback([&] { run = [&] { return run_mask(mask); }; });
+
   ViewOptions view;
   CLI::App* view_command = app.add_subcommand("view", "Write a page that shows an asset on its source in motion");
   add_name(*view_command, "ASSET", view.asset, "Asset (.sphc)")->required();

@@ -6,6 +6,7 @@
 
 #include "baker/import/gltf_file.h"
 #include "baker/import/look.h"
+#include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {
@@ -132,6 +133,24 @@ std::string GlbFile::bytes() const {
   put_word(out, data.size());
   put_word(out, kBinary);
   return out + data;
+}
+
+GlbFile glb_of_bytes(const std::string& bytes, const std::string& file) {
+  const auto word_at = [&](std::size_t at) {
+    std::size_t out = 0;
+    for (std::size_t k = 4; k-- > 0;)
+      out = out << 8 | (at + k < bytes.size() ? static_cast<unsigned char>(bytes[at + k]) : 0);
+    return out;
+  };
+  constexpr std::size_t kJsonStart = 20, kChunkHead = 8;
+  const std::size_t size = word_at(12), begin = kJsonStart + size + kChunkHead;
+  GlbFile out;
+  if (bytes.starts_with("glTF") && bytes.size() >= kJsonStart) {
+    out.json = ordered_json::parse(bytes.substr(kJsonStart, size), nullptr, /*allow_exceptions=*/false);
+  }
+  if (!out.json.is_object()) throw Error(ExitCode::kFile, file + ": is no binary glTF 2.0 file (export it as .glb)");
+  if (begin <= bytes.size()) out.binary = bytes.substr(begin, word_at(kJsonStart + size));
+  return out;
 }
 
 std::string pack_gltf(const std::filesystem::path& path) {

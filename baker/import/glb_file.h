@@ -24,6 +24,9 @@ struct GlbFile {
   std::string bytes() const;
 };
 
+// A binary glTF apart; read_as_glb() makes such bytes. Throws Error(kFile) that names `file` where it is none.
+GlbFile glb_of_bytes(const std::string& bytes, const std::string& file);
+
 // A .gltf, or a GLB that names other files, as one GLB: buffers and pictures beside it move inside, all else is as it
 // was. A picture that is not there stays a name. A GLB that names no file is returned byte for byte. Throws
 // Error(kFile).

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "baker/cli/commands.h"
+#include "baker/cli/console.h"
+#include "baker/cli/outputs.h"
+#include "baker/cli/progress.h"
+#include "baker/mask/clips.h"
+#include "baker/mask/find_hidden.h"
+#include "baker/mask/raised_limbs.h"
+#include "baker/mask/write_mask.h"
+#include "baker/os/written_file.h"
+
+namespace spherechain::baker {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string ending_of(const std::string& file) {
+  std::string ending = fs::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+void check_files(const MaskOptions& options, bool is_json) {
+  check_regular_file(options.input);
+  const std::string ending = ending_of(options.output);
+  if (is_json ? ending != ".json" : ending != ".glb" && ending != ".vrm") {
+    throw Error(ExitCode::kUsage,
+                "-o: " + options.output +
+                    (fs::is_directory(options.output) ? " is a folder"
+                     : is_json                        ? " is written as JSON (name it .json)"
+                     : ending == ".json"              ? " is written as a binary glTF (name it .glb, or take --as json)"
+                                                      : " is written as a binary glTF (name it .glb or .vrm)"));
+  }
+  std::vector<CommandFile> inputs = with_source({}, "CHARACTER", options.input);
+  for (const std::string& recording : options.motions) {
+    MotionChoice motion;
+    motion.motion = recording;
+    inputs = with_motion(std::move(inputs), motion);
+  }
+  check_outputs(inputs, {{"-o", options.output, is_json ? FileKind::kJson : FileKind::kGlb}},
+                options.force ? Force::kGiven : Force::kOffered);
+}
+
+std::string percent_text(double part, double whole) {
+  return fmt::format("{:.1f} %", whole > 0 ? 100 * part / whole : 0);
+}
+
+std::string mask_text(const HiddenSkin& skin, const std::vector<HiddenMesh>& meshes, std::size_t clips,
+                      double margin_percent) {
+  std::string out = fmt::format(
+      "{} frames of {} clip{}\n"
+      "hidden    {} of {} triangles ({}), {} of the area\n"
+      "near edge {} triangles are never seen, and stay: within {:.3g} % of the height of skin that is seen\n",
+      skin.frames, clips, clips == 1 ? "" : "s", skin.hidden, skin.is_hidden.size(),
+      percent_text(static_cast<double>(skin.hidden), static_cast<double>(skin.is_hidden.size())),
+      percent_text(skin.hidden_area, skin.area), skin.near_edge, margin_percent);
+  for (const HiddenMesh& mesh : meshes) {
+    if (!mesh.hidden.empty())
+      out += fmt::format("  {:<24} {:>7} of {}\n", mesh.name, mesh.hidden.size(), mesh.triangles);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::string> mask_forms() { return {"triangles", "vertex-colour", "attribute", "json"}; }
+
+ExitCode run_mask(const MaskOptions& options) {
+  const bool is_json = options.as == "json";
+  check_files(options, is_json);
+  HiddenSkin hidden;
+  std::vector<HiddenMesh> meshes;
+  std::vector<std::string> clip_names, warnings;
+  {
+    Progress progress("mask " + options.input + ":");
+    progress.show("import");
+    ImportOptions import;
+    import.character = options.character;
+    GlbFile glb = glb_of_bytes(read_as_glb(options.input), options.input);
+    const Character character = import_character(options.input, import);
+    const std::vector<PrimitiveRun> runs = primitive_runs(character, glb.json);
+    const MaskSkin skin = make_mask_skin(character, runs, glb.json);
+    const std::vector<Clip> clips = clips_for_mask(character, options.input, import, options.motions,
+                                                   [&](const std::string& doing) { progress.show(doing); });
+    for (const Clip& clip : clips) clip_names.push_back(clip.name);
+    hidden = find_hidden(character, skin, clips, options.margin / 100,
+                         [&](int done, int all) { progress.show(fmt::format("frame {} of {}", done, all)); });
+    if (hidden.hidden == 0) {
+      throw Error(ExitCode::kFile, options.input + ": all of its skin is seen, or no other piece covers it");
+    }
+    for (const std::string& limbs : limbs_never_raised(character, clips)) {
+      warnings.push_back(
+          fmt::format("no clip raises the {}: one that does may show what is hidden (--motion adds a "
+                      "recording)",
+                      limbs));
+    }
+    meshes = hidden_meshes(glb.json, runs, hidden);
+    if (is_json) {
+      write_atomically(options.output, mask_json(meshes, hidden, clip_names));
+    } else {
+      write_mask(glb, options.input, runs, hidden,
+                 options.as == "triangles"   ? MaskForm::kTriangles
+                 : options.as == "attribute" ? MaskForm::kAttribute
+                                             : MaskForm::kVertexColour);
+      write_atomically(options.output, glb.bytes());
+    }
+  }
+  for (const std::string& warning : warnings) say(stderr, "spherechain: warning: {}: {}\n", options.input, warning);
+  say("{}wrote {}\n", mask_text(hidden, meshes, clip_names.size(), options.margin), options.output);
+  return ExitCode::kDone;
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "baker/mask/find_hidden.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include "baker/mask/cover.h"
+#include "baker/mask/views.h"
+#include "baker/mesh/surface_query.h"
+#include "baker/motion/clip.h"
+#include "baker/motion/frame_times.h"
+#include "baker/os/parallel.h"
+
+namespace spherechain::baker {
+namespace {
+
+constexpr int kFramesMax = 45;  // of a clip
+constexpr double kFps = 30;
+constexpr double kPixel = 1.0 / 400;      // of the height
+constexpr double kRestPixel = 1.0 / 800;  // at rest no pixel may change
+constexpr std::size_t kRestTurns = 8;     // of the views
+constexpr double kSeenShare = 2e-4;       // of a triangle's area, on average over frames and views: less is not seen
+
+struct FrameOfClip {
+  const Clip* clip;
+  double seconds;
+};
+
+std::vector<FrameOfClip> frames_of(const std::vector<Clip>& clips) {
+  std::vector<FrameOfClip> out;
+  for (const Clip& clip : clips) {
+    const int count = std::min(frames_in(clip.duration, kFps), kFramesMax);
+    for (int f = 0; f < count; ++f) out.push_back({&clip, count > 1 ? clip.duration * f / (count - 1) : 0});
+  }
+  return out;
+}
+
+// Triangles that are seen at rest, and pieces that are seen from behind more than from the front.
+struct RestView {
+  std::vector<char> is_seen, is_inverted;
+};
+
+RestView look_at_rest(const MaskSkin& skin) {
+  const std::size_t threads = thread_count();
+  std::vector<SeenPixels> lenses(threads, SeenPixels(skin, kRestPixel * skin.height));
+  for (SeenPixels& lens : lenses) lens.clear();
+  run_parallel(threads, kRestTurns, [&](std::size_t thread, std::size_t turn) {
+    for (const Vec3& eye : view_directions(skin.up, turn)) lenses[thread].look(skin.rest.positions, eye);
+  });
+  RestView out{std::vector<char>(skin.rest.triangles.size()), std::vector<char>(skin.piece_count)};
+  std::vector<std::int64_t> votes(skin.piece_count);
+  for (const SeenPixels& lens : lenses) {
+    for (std::size_t t = 0; t < out.is_seen.size(); ++t) {
+      const auto [front, back] = lens.of_triangle()[t];
+      if (front + back > 0) out.is_seen[t] = 1;
+      votes[skin.piece[t]] += std::int64_t{front} - std::int64_t{back};
+    }
+  }
+  for (std::size_t p = 0; p < votes.size(); ++p) out.is_inverted[p] = votes[p] < 0;
+  return out;
+}
+
+// Pixels that show each triangle in all frames and views, but those of skin that comes through its cover.
+std::vector<std::uint64_t> count_pixels(const Character& character, const MaskSkin& skin, const PokeTest& pokes,
+                                        const std::vector<FrameOfClip>& frames,
+                                        const std::function<void(int, int)>& progress) {
+  const std::size_t threads = thread_count();
+  std::vector<SeenPixels> lenses(threads, SeenPixels(skin, kPixel * skin.height));
+  std::vector<std::vector<std::uint64_t>> counts(threads, std::vector<std::uint64_t>(skin.rest.triangles.size()));
+  std::mutex mutex;
+  int done = 0;
+  run_parallel(threads, frames.size(), [&](std::size_t thread, std::size_t f) {
+    const Deformation pose = sample(character.rig, *frames[f].clip, frames[f].seconds);
+    const std::vector<Vec3> positions =
+        deform(morph(skin.rest.positions, character.rig.morphs, pose.morphs), character.rig.weights, pose.bones);
+    SeenPixels& lens = lenses[thread];
+    lens.clear();
+    for (const Vec3& eye : view_directions(skin.up, f)) lens.look(positions, eye);
+    const std::vector<Vec3> normals = pokes.normals(positions);
+    for (Index t = 0; t < counts[thread].size(); ++t) {
+      const auto [front, back] = lens.of_triangle()[t];
+      if (front + back > 0 && !pokes.is_through(t, positions, normals)) counts[thread][t] += front + back;
+    }
+    const std::lock_guard lock(mutex);
+    progress(++done, static_cast<int>(frames.size()));
+  });
+  std::vector<std::uint64_t> out(skin.rest.triangles.size());
+  for (const std::vector<std::uint64_t>& one : counts) {
+    for (std::size_t t = 0; t < out.size(); ++t) out[t] += one[t];
+  }
+  return out;
+}
+
+// The covered triangles and those around them, as far as nobody sees them.
+std::vector<char> unseen_skin(const MaskSkin& skin, const std::vector<Cover>& covers,
+                              const std::vector<char>& is_seen) {
+  std::vector<char> out(covers.size()), touches(skin.welded.positions.size());
+  for (std::size_t t = 0; t < out.size(); ++t) {
+    if (covers[t].triangle == kNoIndex || is_seen[t] != 0) continue;
+    out[t] = 1;
+    for (const Index v : skin.welded.triangles[t]) touches[v] = 1;
+  }
+  for (std::size_t t = 0; t < out.size(); ++t) {
+    const Triangle& corners = skin.welded.triangles[t];
+    const bool is_near = std::any_of(corners.begin(), corners.end(), [&](Index v) { return touches[v] != 0; });
+    if (is_near && is_seen[t] == 0 && skin.is_opaque[t] != 0) out[t] = 1;
+  }
+  return out;
+}
+
+// Takes out of `unseen` what lies within `margin` of seen skin of the same piece. Returns how many triangles.
+std::size_t keep_edges(const MaskSkin& skin, double margin, std::vector<char>& unseen) {
+  struct Piece {
+    std::vector<Index> hidden, shown;
+  };
+  std::vector<Piece> pieces(skin.piece_count);
+  for (Index t = 0; t < unseen.size(); ++t) {
+    Piece& piece = pieces[skin.piece[t]];
+    (unseen[t] != 0 ? piece.hidden : piece.shown).push_back(t);
+  }
+  std::size_t kept = 0;
+  for (const Piece& piece : pieces) {
+    if (piece.hidden.empty() || piece.shown.empty()) continue;
+    const SurfaceQuery shown(skin.rest, piece.shown);
+    run_parallel(thread_count(), piece.hidden.size(), [&](std::size_t, std::size_t i) {
+      const Index t = piece.hidden[i];
+      if (shown.closest(triangle_centroid(skin.rest, t)).distance < margin * skin.height) unseen[t] = 0;
+    });
+    kept += static_cast<std::size_t>(
+        std::count_if(piece.hidden.begin(), piece.hidden.end(), [&](Index t) { return unseen[t] == 0; }));
+  }
+  return kept;
+}
+
+}  // namespace
+
+HiddenSkin find_hidden(const Character& character, const MaskSkin& skin, const std::vector<Clip>& clips, double margin,
+                       const std::function<void(int, int)>& progress) {
+  RestView rest = look_at_rest(skin);
+  const std::vector<Cover> covers = find_covers(skin, rest.is_inverted);
+  const PokeTest pokes(skin, rest.is_inverted, covers, character.rig);
+  const std::vector<FrameOfClip> frames = frames_of(clips);
+  const std::vector<std::uint64_t> pixels = count_pixels(character, skin, pokes, frames, progress);
+  const double views = static_cast<double>(frames.size() * view_directions(skin.up, 0).size());
+  const double pixel_area = kPixel * kPixel * skin.height * skin.height;
+  HiddenSkin out;
+  std::vector<char> is_seen = std::move(rest.is_seen);
+  const std::vector<Vec3> normals = pokes.normals(skin.rest.positions);
+  for (std::size_t t = 0; t < is_seen.size(); ++t) {
+    const double area = triangle_area(skin.rest, t);
+    out.area += area;
+    if (is_seen[t] != 0 && pokes.is_through(static_cast<Index>(t), skin.rest.positions, normals)) is_seen[t] = 0;
+    if (static_cast<double>(pixels[t]) * pixel_area > kSeenShare * area * views) is_seen[t] = 1;
+  }
+  out.is_hidden = unseen_skin(skin, covers, is_seen);
+  out.near_edge = keep_edges(skin, margin, out.is_hidden);
+  for (std::size_t t = 0; t < is_seen.size(); ++t) {
+    if (out.is_hidden[t] == 0) continue;
+    ++out.hidden;
+    out.hidden_area += triangle_area(skin.rest, t);
+  }
+  out.frames = static_cast<int>(frames.size());
+  return out;
+}
+
+}  // namespace spherechain::baker
