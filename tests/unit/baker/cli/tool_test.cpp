@@ -157,8 +157,9 @@ TEST_CASE("--body says what a body with two pairs of limbs is, goes before the s
   CHECK(inspected["regions"][4]["name"] == "tail");
   const Run play = run(fmt::format("play {} --source {}", asset.string(), beast));
   CHECK_MESSAGE(play.code == 0, play.error);
-  check_error(run(fmt::format("play {} --source {} --poses {}", asset.string(), beast, pose("arms_crossed.json"))), 3,
-              {"arms_crossed.json: turns the joints of the automatic rig, and ", "beast.sphc moves with", "\"rig\": \"own\""});
+  check_error(
+      run(fmt::format("play {} --source {} --poses {}", asset.string(), beast, pose("arms_crossed.json"))), 3,
+      {"arms_crossed.json: turns the joints of the automatic rig, and ", "beast.sphc moves with", "\"rig\": \"own\""});
   REQUIRE(run(fmt::format("bake {} -o {} --config {}", beast, asset.string(), config.string())).code == 0);
   CHECK(json::parse(run(fmt::format("inspect {} --json", asset.string())).out)["regions"][0]["name"] == "left_arm");
   CHECK(run(fmt::format("bake {} -o {} --body centaur", beast, asset.string())).code == 2);
