@@ -63,8 +63,8 @@ std::string parts_text(const Event& event) {
 
 std::string frames_text(const Event& event) {
   if (event.from == event.to) return "frame " + frame_text(event.from);
-  const auto faulty = std::count_if(event.depths_mm.begin(), event.depths_mm.end(), [](float d) { return d > 0; });
-  const bool is_all = faulty == 0 || faulty == static_cast<std::ptrdiff_t>(event.depths_mm.size());
+  const std::size_t faulty = faulty_frames(event);
+  const bool is_all = faulty == 0 || faulty == event.depths_mm.size();
   return fmt::format("frames {}-{}{}{}", frame_text(event.from), frame_text(event.to),
                      event.from > event.to ? " (over the loop)" : "", is_all ? "" : fmt::format(", {} faulty", faulty));
 }

@@ -225,8 +225,10 @@ std::vector<std::string> limbs_of(const std::vector<BodyPart>& parts) {
 
 double severity(const Event& event, double fps) {
   const double inside = event.kind == SC_CLASS_INSIDE ? kInsidePercent * event.swallowed : 0;
-  const auto faulty = std::count_if(event.depths_mm.begin(), event.depths_mm.end(), [](float d) { return d > 0; });
-  const double frames = faulty > 0 ? static_cast<double>(faulty) : event.to - event.from + 1;
+  const std::size_t faulty = faulty_frames(event);
+  const double frames = faulty > 0               ? static_cast<double>(faulty)
+                        : event.from <= event.to ? event.to - event.from + 1
+                                                 : static_cast<double>(event.depths_mm.size());
   const double seconds = std::clamp(frames / fps, kSecondsMin, kSecondsMax);
   return (event.depth_percent + inside) * (event.eye ? 1 : kUnseen) * std::sqrt(seconds);
 }

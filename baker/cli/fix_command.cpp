@@ -76,12 +76,6 @@ Pages write_pages(const FixOptions& options, const fs::path& page, const FixedCh
   return out;
 }
 
-bool has_ending(const std::string& file, const char* ending) {
-  std::string own = fs::path(file).extension().string();
-  for (char& c : own) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return own == ending;
-}
-
 void check_files(const FixOptions& options, bool writes_bvh) {
   check_regular_file(options.input);
   if (writes_bvh && !has_ending(options.motion, ".bvh")) {

@@ -285,7 +285,7 @@ int main(int argc, char** argv) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   mask_command
-      ->add_option("--margin", mask.margin, "Skin that is as near to skin that is seen stays, in % of the height")
+      ->add_option("--margin", mask.margin, "Keep skin that is this near to skin that is seen, in % of the height")
       ->check(CLI::Range(0.0, 10.0))
       ->check(refuse_nan)
       ->capture_default_str();

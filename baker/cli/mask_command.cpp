@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -21,23 +19,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string ending_of(const std::string& file) {
-  std::string ending = fs::path(file).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
-
 void check_files(const MaskOptions& options, bool is_json) {
   check_regular_file(options.input);
-  const std::string ending = ending_of(options.output);
-  if (is_json ? ending != ".json" : ending != ".glb" && ending != ".vrm") {
+  const std::string& output = options.output;
+  if (is_json ? !has_ending(output, ".json") : !has_ending(output, ".glb") && !has_ending(output, ".vrm")) {
     throw Error(ExitCode::kUsage,
-                "-o: " + options.output +
-                    (fs::is_directory(options.output) ? " is a folder"
-                     : is_json                        ? " is written as JSON (name it .json)"
-                     : ending == ".json"              ? " is written as a binary glTF (name it .glb, or take --as json)"
-                                                      : " is written as a binary glTF (name it .glb or .vrm)"));
+                "-o: " + output +
+                    (fs::is_directory(output)      ? " is a folder"
+                     : is_json                     ? " is written as JSON (name it .json)"
+                     : has_ending(output, ".json") ? " is written as a binary glTF (name it .glb, or take --as json)"
+                                                   : " is written as a binary glTF (name it .glb or .vrm)"));
   }
   std::vector<CommandFile> inputs = with_source({}, "CHARACTER", options.input);
   for (const std::string& recording : options.motions) {

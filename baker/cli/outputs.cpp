@@ -123,4 +123,10 @@ void check_outputs(const std::vector<CommandFile>& inputs, const std::vector<Out
                                    ")");
 }
 
+bool has_ending(const std::string& file, const char* ending) {
+  std::string own = std::filesystem::path(file).extension().string();
+  for (char& c : own) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return own == ending;
+}
+
 }  // namespace spherechain::baker

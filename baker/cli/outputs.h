@@ -43,4 +43,7 @@ enum class Force { kNone, kOffered, kGiven };
 // and writable, and a file that is there already is empty or this tool's, of the same kind: Error(kFile).
 void check_outputs(const std::vector<CommandFile>& inputs, const std::vector<OutputFile>& outputs, Force force);
 
+// Does a file's name end so, in upper or lower case? `ending` is in lower case, with its dot.
+bool has_ending(const std::string& file, const char* ending);
+
 }  // namespace spherechain::baker

@@ -343,7 +343,7 @@ namespace Spherechain
         public Vec3 Direction;
         /// <summary>how much deeper than the rule allows, the less the less of it can be seen; 0: not deeper. It is continuous in `measures`, and does not depend on `previous`</summary>
         public float FaultDepth;
-        /// <summary>measures.depth, but for a part that is about half inside; up to 1.5 times as much where `previous` keeps the direction</summary>
+        /// <summary>measures.depth; up to 1.5 times as much where `previous` keeps the direction. While a part goes inside, from 75 to 100 % of sc_rule.inside, depth lies between two ways out; this is one of them</summary>
         public float Distance;
         /// <summary>of the line where the parts cross; of the ground: of the box</summary>
         public Vec3 Centre;

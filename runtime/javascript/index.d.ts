@@ -199,7 +199,7 @@ export interface Penetration {
   direction: Float32Array;
   /** How much deeper than the rule allows, less where little of it is seen. 0: not deeper. */
   faultDepth: number;
-  /** Measures.depth. With `previous`, up to 1.5 times as much where the direction of the last frame is kept. */
+  /** Measures.depth, or while a part goes inside one of two ways out. With `previous`, up to 1.5 times as much where the direction of the last frame is kept. */
   distance: number;
   /** Centre of the line in which the parts cross, and a box around that line. For the ground: a box of the skin below it, and its centre. */
   centre: Float32Array;

@@ -48,10 +48,10 @@ typedef struct sc_penetration {
   sc_vec3 direction;
   float fault_depth; /* how much deeper than the rule allows, the less the less of it can be seen; 0: not deeper. It is
                         continuous in `measures`, and does not depend on `previous` */
-  float distance; /* measures.depth, but for a part that is about half inside; up to 1.5 times as much where `previous`
-                     keeps the direction */
-  sc_vec3 centre; /* of the line where the parts cross; of the ground: of the box */
-  sc_vec3 low, high;                    /* a box around that line; of the ground: around the skin below it */
+  float distance;    /* measures.depth; up to 1.5 times as much where `previous` keeps the direction. While a part goes
+                        inside, from 75 to 100 % of sc_rule.inside, depth lies between two ways out; this is one of them */
+  sc_vec3 centre;    /* of the line where the parts cross; of the ground: of the box */
+  sc_vec3 low, high; /* a box around that line; of the ground: around the skin below it */
   sc_skin_point deepest, deepest_other; /* the points that part last; deepest_other - deepest = distance * direction */
   sc_measures measures;
 } sc_penetration;

@@ -13,8 +13,6 @@ namespace {
 
 constexpr int kHalvesMin = 4;  // of six
 
-int middle_of(int a, int b, int c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); }
-
 // How often the skin winds around the line's start.
 class Winding : public Crossings {
  public:
@@ -123,11 +121,11 @@ class Tester {
     int turns = 0;
     for_spheres([&](std::size_t s, const Probe& probe) {
       count_windings(probe, test_.windings + 3 * s);
-      turns += middle(test_.windings + 3 * s);
+      turns += middle_of(test_.windings + 3 * s);
     });
     // A pose that mirrors the skin turns it inside out: then most probes of a body lie inside it the other way round.
     handedness_ = test_.are_one && turns < 0 ? -1 : 1;
-    bool holds[256] = {};
+    bool holds[kMaxPartCount + 1] = {};
     for_spheres([&](std::size_t s, const Probe& probe) {
       if (is_deeper(probe, test_.windings + 3 * s)) {
         test_.part[s] = holder_of(probe);
@@ -203,11 +201,6 @@ class Tester {
     return count >= kHalvesMin ? nearest : kOutside;
   }
 
-  template <typename T>
-  static int middle(const T* of) {
-    return middle_of(of[0], of[1], of[2]);
-  }
-
   void follow_from(const Probe& probe, std::size_t axis, bool goes_down, Crossings& found) {
     follow(test_.target, test_.skin, {{probe.at.x, probe.at.y, probe.at.z}, axis, true, goes_down}, found);
     test_.skin.has_sphere_boxes = true;
@@ -215,27 +208,26 @@ class Tester {
 
   // Along one axis, where a closed skin gives the same along each; else along all three, and the middle counts.
   void count_windings(const Probe& probe, std::int16_t* out) {
-    const std::int8_t* const rest = probe.at_rest;
-    const bool is_closed = test_.are_one && rest[0] == rest[1] && rest[1] == rest[2];
-    for (std::size_t axis = is_closed ? kShortAxis : 0; axis < 3; ++axis) {
+    const bool one_axis = test_.are_one && is_closed(probe.at_rest);
+    for (std::size_t axis = one_axis ? kShortAxis : 0; axis < 3; ++axis) {
       Winding winding(*test_.skin.surface);
       follow_from(probe, axis, false, winding);
       out[axis] = static_cast<std::int16_t>(std::max(-9999, std::min(winding.total, 9999)));
     }
-    if (is_closed) {
+    if (one_axis) {
       out[0] = out[1] = out[kShortAxis];
     }
   }
 
   bool is_deeper(const Probe& probe, const std::int16_t* now) const {
     if (!test_.are_one) {
-      return middle(now) != 0;
+      return middle_of(now) != 0;
     }
     int more[3];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       more[axis] = handedness_ * now[axis] - probe.at_rest[axis];
     }
-    return middle(more) > 0;
+    return middle_of(more) > 0;
   }
 
   const InsideTest& test_;
@@ -245,8 +237,7 @@ class Tester {
 }  // namespace
 
 bool is_core(const Surface& surface, std::size_t sphere) {
-  const std::int8_t* const rest = surface.rest_windings.data + 3 * sphere;
-  return middle_of(rest[0], rest[1], rest[2]) > 0;
+  return middle_of(surface.rest_windings.data + 3 * sphere) > 0;
 }
 
 void find_inside(const InsideTest& test) { Tester(test).run(); }

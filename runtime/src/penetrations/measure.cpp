@@ -239,7 +239,7 @@ class Measurer {
     double swallowed = 0;     // share of the one that is inside the other
     bool b_is_inner = false;  // it is b
     bool passes_through = false;
-    double containment = 0;  // as containment_of()
+    double containment = 0;  // see containment_of()
     double apart = 0;        // where it is above 0: how far the inner part is from being clear of all around it
     Exit way_apart;
   };
@@ -359,7 +359,7 @@ class Measurer {
     if (in_.contacts.size == 0) {
       sweep_.clear();
     }
-    part_them(parts);
+    pose_all_skins();
     Double3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high = -1.0 * low;
     const PosedSkin& skin = parts.b_is_inner ? memory_.skins.b : memory_.skins.a;
     for (const TriangleRun& run : runs_of(*skin.surface, parts.b_is_inner ? parts.b : parts.a)) {
@@ -371,6 +371,7 @@ class Measurer {
     }
     parts.contour.center = 0.5 * (low + high);
     parts.contour.rest_distance = HUGE_VAL;
+    part_them(parts);
     limits_ = &in_.limits;
     Penetration out = describe(parts, parts.way_apart, {0, 0}, nullptr);
     out.low = to_float(low);

@@ -135,17 +135,13 @@ int winding_at_rest(const Surface& surface, const float (&from)[3], std::size_t 
   return std::max(-127, std::min(out, 127));
 }
 
-int middle_of(const std::int8_t* of) {
-  return std::max(std::min(of[0], of[1]), std::min(std::max(of[0], of[1]), of[2]));
-}
-
 // Around a point at rest, along each axis; or along one, where the skin is closed there.
-void find_windings_of(const Surface& surface, const Vec3& point, bool is_closed, std::int8_t* out) {
+void find_windings_of(const Surface& surface, const Vec3& point, bool one_axis, std::int8_t* out) {
   const float from[3] = {point.x, point.y, point.z};
-  for (std::size_t axis = is_closed ? kShortAxis : 0; axis < 3; ++axis) {
+  for (std::size_t axis = one_axis ? kShortAxis : 0; axis < 3; ++axis) {
     out[axis] = static_cast<std::int8_t>(winding_at_rest(surface, from, axis));
   }
-  if (is_closed) {
+  if (one_axis) {
     out[0] = out[1] = out[kShortAxis];
   }
 }
@@ -175,9 +171,8 @@ void find_core(const AssetView& asset, const Surface& surface, std::size_t part)
       const std::size_t place = kCorePoints * part + k;
       std::int8_t* const windings = surface.core_windings.data + 3 * place;
       const std::size_t sphere = surface.triangle_spheres[t];
-      const std::int8_t* const around = surface.rest_windings.data + 3 * sphere;
-      const bool is_closed = around[0] == around[1] && around[1] == around[2];
-      find_windings_of(surface, core_point(at, asset.spheres()[sphere].center, k), is_closed, windings);
+      const bool one_axis = is_closed(surface.rest_windings.data + 3 * sphere);
+      find_windings_of(surface, core_point(at, asset.spheres()[sphere].center, k), one_axis, windings);
       surface.core_triangles[place] = middle_of(windings) > 0 ? t : kNoPlace;
     }
   });

@@ -9,6 +9,16 @@ namespace spherechain {
 
 constexpr std::size_t kShortAxis = 2;  // most characters stand along y, and are thinnest along z
 
+// Counts along x, y and z, of which the middle one counts.
+template <typename T>
+int middle_of(const T* counts) {
+  const int a = counts[0], b = counts[1], c = counts[2];
+  return a > b ? (b > c ? b : a > c ? c : a) : (a > c ? a : b > c ? c : b);
+}
+
+// At rest the skin is closed around a point where it winds around it equally often along each axis.
+inline bool is_closed(const std::int8_t* at_rest) { return at_rest[0] == at_rest[1] && at_rest[1] == at_rest[2]; }
+
 // Memory while the windings are found.
 struct PieceSum {
   double middle[3], area, volume;

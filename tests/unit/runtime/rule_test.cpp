@@ -65,6 +65,17 @@ TEST_CASE("a class changes at its limit, and what is measured beyond that change
   }
 }
 
+TEST_CASE("a fault that goes through a part is inside it, and what is no fault stays none") {
+  Measures of = hand_in_thigh();
+  for (const float depth : {0.001F, 0.05F}) {
+    of.depth = depth;
+    of.through = 0;
+    const PenetrationClass kind = classify(of);
+    of.through = 1;
+    CHECK(classify(of) == (is_fault(kind) ? SC_CLASS_INSIDE : kind));
+  }
+}
+
 TEST_CASE("a fold depends on how the parts hang together, and is a fault once it is deep") {
   Measures of = hand_in_thigh();
   of.rest_distance = 0.09F;

@@ -67,6 +67,8 @@ TEST_CASE("one cause is one ticket: repeats, mirrored sides, a limb through seve
   CHECK(count({hand, fault("left arm", "chest", 18, 30, 2)}) == 2);    // at another time
   CHECK(count({hand, fault("right hand", "chest", 12, 22, 2)}) == 2);  // only the trunk is the same
   CHECK(count({hand, fault("tail tip", "left leg", 10, 20, 2), fault("tail", "right leg", 10, 20, 2)}) == 2);
+  // The tail meets what meets the hand at the same time, but is another limb's fault.
+  CHECK(count({hand, fault("left hand", "tail", 10, 20, 2), fault("tail", "right leg", 10, 20, 1)}) == 2);
   auto over_loop = fault("left arm", "chest", 90, 15, 2);
   over_loop.event.depths_mm.resize(25);
   CHECK(count({fault("left hand", "hips", 95, 99, 3), over_loop}) == 1);
@@ -94,6 +96,11 @@ TEST_CASE("tickets come with the worst first: deeper, longer, inside, seen; ids 
   CHECK(order == std::vector<std::size_t>{3, 2, 1, 0});
   CHECK(tickets[0].title == "hero walk: left hand in hips");
   CHECK(tickets[1].severity == doctest::Approx(6 * std::sqrt(11.0 / 30)));
+
+  auto flickers = deep;
+  flickers.event.depths_mm = {0, 90, 0, 0, 0, 0, 0, 0, 0, 108, 108};
+  CHECK(bk::severity(flickers.event, 30) == doctest::Approx(6 * std::sqrt(0.1)));
+  CHECK(bk::frames_text(flickers.event) == "frames 40-50, 3 faulty");
 
   auto later = walk;
   later.events[3].event.from = 3;
