@@ -3,6 +3,8 @@
 // it.
 #pragma once
 
+#include <algorithm>
+
 #include "runtime/src/skin/skin_table.h"
 
 namespace spherechain {
@@ -11,9 +13,8 @@ constexpr std::size_t kShortAxis = 2;  // most characters stand along y, and are
 
 // Counts along x, y and z, of which the middle one counts.
 template <typename T>
-int middle_of(const T* counts) {
-  const int a = counts[0], b = counts[1], c = counts[2];
-  return a > b ? (b > c ? b : a > c ? c : a) : (a > c ? a : b > c ? c : b);
+T middle_of(const T* counts) {
+  return std::max(std::min(counts[0], counts[1]), std::min(std::max(counts[0], counts[1]), counts[2]));
 }
 
 // At rest the skin is closed around a point where it winds around it equally often along each axis.
