@@ -9,11 +9,15 @@ namespace {
 
 std::vector<Cluster> cluster_regions(const Character& character, const Binding& binding,
                                      const ClusterSettings& settings) {
-  std::vector<std::vector<Index>> regions(binding.spheres.size());
-  for (Index t = 0; t < binding.sphere_of_triangle.size(); ++t) regions[binding.sphere_of_triangle[t]].push_back(t);
+  const Components pieces = connected_components(character.skin);
+  std::map<std::pair<std::uint32_t, Index>, std::vector<Index>> regions;  // by sphere, then piece
+  for (Index t = 0; t < binding.sphere_of_triangle.size(); ++t) {
+    regions[{binding.sphere_of_triangle[t], pieces.of_triangle[t]}].push_back(t);
+  }
   std::vector<Cluster> out;
-  for (std::uint32_t s = 0; s < regions.size(); ++s) {
-    for (std::vector<Index>& triangles : cluster_triangles(character.skin, regions[s], settings)) {
+  for (const auto& [key, region] : regions) {
+    const std::uint32_t s = key.first;
+    for (std::vector<Index>& triangles : cluster_triangles(character.skin, region, settings)) {
       std::sort(triangles.begin(), triangles.end(), [&](Index a, Index b) {
         return character.skin_source_triangle[a] < character.skin_source_triangle[b];
       });

@@ -87,8 +87,9 @@ void run_after_fit(Bake& out, const Progress& progress) {
   });
   const auto write = [&] {
     return serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, out.bones,
-                      out.moments, out.body_parts, out.clusters, to_json(settings)});
+                      out.moments, out.body_parts, out.clusters, out.layers, to_json(settings)});
   };
+  stage(out, progress, "layers", [&] { out.layers = find_layers(write(), pack(out.character.source_positions)); });
   if (settings.bind.rule != RefitRule::kPaper && !settings.import.prop) {
     stage(out, progress, "calibrate", [&] {
       const std::vector<std::uint8_t> draft = write();  // for the runtime, which moves the spheres

@@ -15,6 +15,7 @@
 #include "baker/bind/fit_quality.h"
 #include "baker/chains/chains.h"
 #include "baker/clusters/clusters.h"
+#include "baker/layers/layers.h"
 #include "baker/edits/edit_spheres.h"
 #include "baker/edits/edits.h"
 #include "baker/fit/fit.h"
@@ -89,6 +90,7 @@ struct Bake {
   BoneBinding bones;
   MomentBinding moments;
   Clusters clusters;
+  Layers layers;
   std::vector<std::uint8_t> asset;
   std::vector<StageTime> times;
 };

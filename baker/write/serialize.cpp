@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <map>
 
 #include "baker/mesh/error.h"
 #include "baker/os/sha256.h"
 #include "baker/write/moment_tables.h"
-#include "baker/write/rest_contacts.h"
 #include "baker/write/schema_values.h"
 #include "baker/write/skin_packing.h"
 #include "baker/write/version.h"
@@ -28,8 +28,25 @@ std::vector<std::uint32_t> triangle_counts(const AssetSource& in) {
   return out;
 }
 
+// The part that most of a sphere's triangles are of.
+std::vector<std::uint8_t> main_parts_of(const AssetSource& in) {
+  std::vector<std::map<std::uint8_t, std::size_t>> counts(in.spheres.spheres.size());
+  for (const Cluster& cluster : in.clusters.clusters) {
+    for (const Index t : cluster.triangles) {
+      ++counts[cluster.sphere][in.parts.of_triangle[in.character.skin_source_triangle[t]]];
+    }
+  }
+  std::vector<std::uint8_t> out;
+  for (const auto& of_sphere : counts) {
+    const auto most = std::ranges::max_element(of_sphere, {}, [](const auto& of_part) { return of_part.second; });
+    out.push_back(most == of_sphere.end() ? std::uint8_t{0} : most->first);
+  }
+  return out;
+}
+
 void add_spheres(const AssetSource& in, const std::vector<std::uint32_t>& triangle_counts,
                  std::vector<schema::Sphere>& spheres, std::vector<schema::Pivot>& pivots) {
+  const std::vector<std::uint8_t> main_parts = main_parts_of(in);
   for (std::size_t i = 0; i < in.spheres.spheres.size(); ++i) {
     const FittedSphere& fitted = in.spheres.spheres[i];
     const BoundSphere& bound = in.binding.spheres[i];
@@ -37,7 +54,7 @@ void add_spheres(const AssetSource& in, const std::vector<std::uint32_t>& triang
         to_schema(bound.rest.center), static_cast<float>(bound.rest.radius), static_cast<float>(bound.detect_radius),
         static_cast<float>(bound.spread), static_cast<std::uint32_t>(pivots.size()), triangle_counts[i],
         static_cast<std::uint16_t>(bound.pivots.size()), fitted.region, static_cast<schema::Side>(fitted.side),
-        static_cast<std::int16_t>(fitted.level), std::uint16_t{0});
+        static_cast<std::int16_t>(fitted.level), main_parts[i], std::uint8_t{0});
     for (const BoundPivot& pivot : bound.pivots) {
       const Triangle& corners = in.character.source_triangles[in.character.skin_source_triangle[pivot.triangle]];
       pivots.emplace_back(corners[0], corners[1], corners[2], static_cast<float>(pivot.weight));
@@ -72,7 +89,7 @@ schema::FitError fit_error(const AssetSource& in, Ball TorsoFit::*which) {
   return {static_cast<float>(sum.mean_abs), static_cast<float>(sum.max_abs)};
 }
 
-std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<Pair>& rest_contacts) {
+std::vector<std::uint8_t> bytes_of(const AssetSource& in) {
   flatbuffers::FlatBufferBuilder builder(1 << 20);
   const std::vector<std::uint32_t> counts = triangle_counts(in);
   std::vector<schema::Sphere> spheres;
@@ -101,7 +118,7 @@ std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<Pair
   }
   const std::vector<flatbuffers::Offset<schema::Bone>> bones = create_bones(builder, in.bones);
   const auto moments = create_moments(builder, in.moments);
-  const auto skin = create_skin(builder, in.character, in.bones, in.clusters, in.parts, rest_contacts);
+  const auto skin = create_skin(builder, in.character, in.bones, in.clusters, in.parts, in.layers, in.spheres.spheres.size());
   const std::vector<std::uint64_t> ignored = ignored_bits(in);
   const std::vector<schema::RestPair> rest_fit = rest_pairs_of(in.binding.rest_fit),
                                       rest_detect = rest_pairs_of(in.binding.rest_detect);
@@ -149,10 +166,7 @@ std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<Pair
 }  // namespace
 
 std::vector<std::uint8_t> serialize(const AssetSource& in) {
-  std::vector<std::uint8_t> bytes = bytes_of(in, {});
-  const std::vector<Pair> rest_contacts = find_rest_contacts(bytes, pack(in.character.source_positions));
-  if (!rest_contacts.empty()) bytes = bytes_of(in, rest_contacts);
-
+  std::vector<std::uint8_t> bytes = bytes_of(in);
   sc_asset check;
   char message[256];
   if (sc_asset_open(&check, SC_ABI_VERSION, bytes.data(), bytes.size(), message, sizeof(message)) != SC_OK) {

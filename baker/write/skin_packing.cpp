@@ -6,10 +6,12 @@
 #include <bit>
 #include <limits>
 #include <map>
+#include <type_traits>
 
 #include "baker/mesh/error.h"
 #include "baker/write/schema_values.h"
 #include "baker/write/stream.h"
+#include "runtime/src/asset/skin_data.h"
 
 namespace spherechain::baker {
 namespace {
@@ -142,20 +144,36 @@ Vertices vertices_of(const Character& character, const Clusters& in) {
   return out;
 }
 
+// Runs of equal bytes, and where they end.
+struct RunsOfBytes {
+  std::vector<std::uint8_t> values;
+  StreamWriter ends;
+
+  RunsOfBytes() = default;
+  explicit RunsOfBytes(const std::vector<std::uint8_t>& bytes) {
+    for (std::uint32_t i = 0; i < bytes.size(); ++i) {
+      if (i == 0 || bytes[i] != bytes[i - 1]) values.push_back(bytes[i]);
+      if (i + 1 == bytes.size() || bytes[i] != bytes[i + 1]) ends.put(i + 1);
+    }
+  }
+};
+
 struct Runs {
-  StreamWriter triangles, vertices, bones, part_ends;
-  std::vector<std::uint8_t> corners, parts;
+  StreamWriter triangles, vertices, bones;
+  std::vector<std::uint8_t> corners;
+  RunsOfBytes parts, layers;
   std::vector<schema::Cluster> clusters;
 };
 
-Runs runs_of(const Character& character, const Clusters& in, const BodyParts& parts) {
+Runs runs_of(const Character& character, const Clusters& in, const BodyParts& parts, const Layers& layers) {
   Runs out;
-  std::uint32_t triangle_count = 0;
-  std::vector<std::uint32_t> ends;
+  std::vector<std::uint8_t> part_of_triangle;
   for (const Cluster& cluster : in.clusters) {
     out.clusters.emplace_back(static_cast<std::uint8_t>(cluster.triangles.size()),
                               static_cast<std::uint8_t>(cluster.vertices.size()),
-                              static_cast<std::uint16_t>(cluster.bones.size()));
+                              static_cast<std::uint16_t>(cluster.bones.size()),
+                              layers.is_buried.empty() ? std::uint8_t{0} : static_cast<std::uint8_t>(layers.is_buried[out.clusters.size()]),
+                              std::uint8_t{0});
     for (const Index vertex : cluster.vertices) out.vertices.put(vertex);
     for (const ClusterBone& bone : cluster.bones) out.bones.put(bone.bone);
     for (const Index t : cluster.triangles) {
@@ -165,16 +183,21 @@ Runs runs_of(const Character& character, const Clusters& in, const BodyParts& pa
         const auto slot = std::ranges::lower_bound(cluster.vertices, in.vertex_of_source[v]);
         out.corners.push_back(static_cast<std::uint8_t>(slot - cluster.vertices.begin()));
       }
-      ++triangle_count;
-      if (!out.parts.empty() && out.parts.back() == parts.of_triangle[source]) {
-        ends.back() = triangle_count;
-      } else {
-        out.parts.push_back(parts.of_triangle[source]);
-        ends.push_back(triangle_count);
-      }
+      part_of_triangle.push_back(parts.of_triangle[source]);
     }
   }
-  for (const std::uint32_t end : ends) out.part_ends.put(end);
+  out.parts = RunsOfBytes(part_of_triangle);
+  out.layers = RunsOfBytes(layers.of_triangle.empty() ? std::vector<std::uint8_t>(part_of_triangle.size(), 0)
+                                                      : layers.of_triangle);
+  return out;
+}
+
+StreamWriter stream_of(const std::vector<Pair>& pairs) {
+  StreamWriter out;
+  for (const Pair& pair : pairs) {
+    out.put(pair.a);
+    out.put(pair.b);
+  }
   return out;
 }
 
@@ -202,21 +225,24 @@ PackedHulls hulls_of(const Clusters& in) {
 
 flatbuffers::Offset<schema::Skin> create_skin(flatbuffers::FlatBufferBuilder& builder, const Character& character,
                                               const BoneBinding& bones, const Clusters& clusters,
-                                              const BodyParts& parts, const std::vector<Pair>& rest_contacts) {
+                                              const BodyParts& parts, const Layers& layers,
+                                              std::size_t sphere_count) {
   const Vertices vertices = vertices_of(character, clusters);
-  const Runs runs = runs_of(character, clusters, parts);
+  const Runs runs = runs_of(character, clusters, parts, layers);
   const Groups groups = group_clusters(clusters.clusters, !bones.bones.empty());
   const PackedHulls hulls = hulls_of(clusters);
-  StreamWriter contacts;
-  for (const Pair& pair : rest_contacts) {
-    contacts.put(pair.a);
-    contacts.put(pair.b);
-  }
+  // Of nothing that is known yet: as many numbers as the runtime expects.
+  const auto or_zeros = [](const auto& numbers, std::size_t count) {
+    return numbers.empty() ? std::decay_t<decltype(numbers)>(count, 0) : numbers;
+  };
+  const std::size_t cores = kCorePoints * parts.parts.size();
+  StreamWriter core_triangles;
+  for (const std::uint32_t t : or_zeros(layers.core_triangles, cores)) core_triangles.put(t);
   const auto bytes = [&](const StreamWriter& stream) { return builder.CreateVector(stream.bytes()); };
   const auto triangles_at = bytes(runs.triangles);
   const auto corners_at = builder.CreateVector(runs.corners);
-  const auto parts_at = builder.CreateVector(runs.parts);
-  const auto part_ends_at = bytes(runs.part_ends);
+  const auto parts_at = builder.CreateVector(runs.parts.values);
+  const auto part_ends_at = bytes(runs.parts.ends);
   const auto clusters_at = builder.CreateVectorOfStructs(runs.clusters);
   const auto cluster_vertices_at = bytes(runs.vertices);
   const auto cluster_bones_at = bytes(runs.bones);
@@ -235,7 +261,12 @@ flatbuffers::Offset<schema::Skin> create_skin(flatbuffers::FlatBufferBuilder& bu
   const auto bounds_morph_counts_at = builder.CreateVector(groups.morph_counts);
   const auto bounds_morph_targets_at = builder.CreateVector(groups.morph_targets);
   const auto bounds_morphs_at = aligned_vector(builder, groups.morphs);
-  const auto contacts_at = bytes(contacts);
+  const auto contacts_at = bytes(stream_of(layers.rest_contacts)), layer_pairs_at = bytes(stream_of(layers.pairs));
+  const auto layers_at = builder.CreateVector(runs.layers.values);
+  const auto layer_ends_at = bytes(runs.layers.ends);
+  const auto windings_at = builder.CreateVector(or_zeros(layers.windings, 3 * sphere_count));
+  const auto core_triangles_at = bytes(core_triangles);
+  const auto core_windings_at = builder.CreateVector(or_zeros(layers.core_windings, 3 * cores));
   const auto hulls_at = builder.CreateVectorOfStructs(hulls.hulls);
   const auto hull_bones_at = builder.CreateVectorOfStructs(hulls.bones);
   const auto hull_points_at = bytes(hulls.points);
@@ -243,7 +274,8 @@ flatbuffers::Offset<schema::Skin> create_skin(flatbuffers::FlatBufferBuilder& bu
       builder, static_cast<std::uint32_t>(clusters.vertices.size()), triangles_at, corners_at, parts_at, part_ends_at,
       clusters_at, cluster_vertices_at, cluster_bones_at, sources_at, welds_at, positions_at, counts_at, bones_at,
       weights_at, morph_counts_at, morphs_at, boxes_at, term_counts_at, term_bones_at, terms_at, bounds_morph_counts_at,
-      bounds_morph_targets_at, bounds_morphs_at, contacts_at, hulls_at, hull_bones_at, hull_points_at);
+      bounds_morph_targets_at, bounds_morphs_at, contacts_at, layer_pairs_at, layers_at, layer_ends_at, windings_at,
+      core_triangles_at, core_windings_at, hulls_at, hull_bones_at, hull_points_at);
 }
 
 }  // namespace spherechain::baker

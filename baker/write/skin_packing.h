@@ -7,14 +7,14 @@
 #include "baker/bind/bind_bones.h"
 #include "baker/bind/body_parts.h"
 #include "baker/clusters/clusters.h"
+#include "baker/layers/layers.h"
 #include "sphere_chains_generated.h"
 #include "spherechain/types.h"
 
 namespace spherechain::baker {
 
-// `rest_contacts`: source triangles that intersect at rest, sorted.
 flatbuffers::Offset<schema::Skin> create_skin(flatbuffers::FlatBufferBuilder& builder, const Character& character,
                                               const BoneBinding& bones, const Clusters& clusters,
-                                              const BodyParts& parts, const std::vector<Pair>& rest_contacts);
+                                              const BodyParts& parts, const Layers& layers, std::size_t sphere_count);
 
 }  // namespace spherechain::baker

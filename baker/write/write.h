@@ -11,6 +11,7 @@
 #include "baker/bind/body_parts.h"
 #include "baker/chains/chains.h"
 #include "baker/clusters/clusters.h"
+#include "baker/layers/layers.h"
 #include "baker/rig/rig.h"
 
 namespace spherechain::baker {
@@ -27,6 +28,7 @@ struct AssetSource {
   const MomentBinding& moments;
   const BodyParts& parts;
   const Clusters& clusters;
+  const Layers& layers;
   std::string settings;  // canonical JSON
 };
 

@@ -82,7 +82,11 @@ struct SkinParts {
   std::vector<BoundsTerm> bounds_terms;
   std::vector<std::uint32_t> bounds_morph_counts, bounds_morph_targets;  // no streams
   std::vector<BallLanes> bounds_morphs;
-  Numbers rest_contacts;
+  Numbers rest_contacts, layer_pairs;
+  std::vector<std::uint8_t> layer_runs;
+  Numbers layer_run_ends;
+  std::vector<std::int8_t> windings, core_windings;
+  Numbers core_triangles;
   std::vector<PackedHull> hulls;
   std::vector<HullBone> hull_bones;
   Numbers hull_points;

@@ -140,6 +140,21 @@ class Packer {
     }
   }
 
+  // Some clusters, and pairs of them, are layers.
+  static std::uint8_t is_buried(std::size_t cluster) { return cluster % 11 == 5 ? 1 : 0; }
+  void pack_layers() {
+    for (std::uint32_t a = 0; a < out_.clusters.size(); ++a) {
+      for (std::uint32_t b = a + 1 + a % 3; b < out_.clusters.size(); b += 3) {
+        out_.layer_pairs.insert(out_.layer_pairs.end(), {a, b});
+      }
+    }
+    out_.layer_runs = {0};
+    out_.layer_run_ends = {static_cast<std::uint32_t>(out_.triangles.size())};
+    out_.windings.assign(3 * tiny_.parts.spheres.size(), 0);
+    out_.core_triangles.assign(kCorePoints * tiny_.parts.parts.size(), 0);
+    out_.core_windings.assign(3 * out_.core_triangles.size(), 0);
+  }
+
   void pack_cluster(const Numbers& triangles) {
     std::set<std::uint32_t> vertices;
     for (const std::uint32_t t : triangles) {
@@ -166,7 +181,7 @@ class Packer {
       }
     }
     out_.clusters.push_back({static_cast<std::uint8_t>(triangles.size()), static_cast<std::uint8_t>(vertices.size()),
-                             static_cast<std::uint16_t>(bones.size())});
+                             static_cast<std::uint16_t>(bones.size()), is_buried(out_.clusters.size()), 0});
     out_.cluster_vertices.insert(out_.cluster_vertices.end(), vertices.begin(), vertices.end());
     out_.cluster_bones.insert(out_.cluster_bones.end(), bones.begin(), bones.end());
     members_.emplace_back(vertices.begin(), vertices.end());

@@ -19,8 +19,8 @@ static_assert(offsetof(Pivot, weight) == 12 && offsetof(sc_source_buffer, hash) 
               offsetof(RestPair, rest_scale) == 8 && offsetof(CenterTerm, w) == 12);
 static_assert(offsetof(RestSphere, pivot_spread) == 20 && offsetof(RestSphere, triangle_count) == 28 &&
               offsetof(RestSphere, pivot_count) == 32 && offsetof(RestSphere, region) == 34 &&
-              offsetof(RestSphere, side) == 35 && offsetof(RestSphere, level) == 36);
-static_assert(offsetof(BoxLanes, radius) == 192 && offsetof(PackedCluster, bone_count) == 2 &&
+              offsetof(RestSphere, side) == 35 && offsetof(RestSphere, level) == 36 && offsetof(RestSphere, part) == 38);
+static_assert(offsetof(BoxLanes, radius) == 192 && offsetof(PackedCluster, bone_count) == 2 && offsetof(PackedCluster, is_buried) == 4 &&
               offsetof(PackedHull, center) == 4 && offsetof(PackedHull, slack) == 20);
 
 // Empty where the asset lacks the array.
@@ -63,6 +63,12 @@ SkinData skin_of(const schema::Skin& stored) {
   skin.influence_bones = entries_of<std::uint8_t>(stored.influence_bones());
   skin.morph_counts = entries_of<std::uint16_t>(stored.morph_counts());
   skin.rest_contacts = entries_of<std::uint8_t>(stored.rest_contacts());
+  skin.layer_pairs = entries_of<std::uint8_t>(stored.layer_pairs());
+  skin.layer_runs = entries_of<std::uint8_t>(stored.layer_runs());
+  skin.layer_run_ends = entries_of<std::uint8_t>(stored.layer_run_ends());
+  skin.windings = entries_of<std::int8_t>(stored.windings());
+  skin.core_triangles = entries_of<std::uint8_t>(stored.core_triangles());
+  skin.core_windings = entries_of<std::int8_t>(stored.core_windings());
   skin.hull_points = entries_of<std::uint8_t>(stored.hull_points());
   skin.part_runs = entries_of<std::uint8_t>(stored.part_runs());
   skin.part_run_ends = entries_of<std::uint8_t>(stored.part_run_ends());

@@ -134,6 +134,7 @@ class AssetChecker {
         {sphere.pivot_count > 0, ".pivot_count", "0, but a sphere needs a pivot"},
         {sphere.side <= SC_SIDE_RIGHT, ".side", "no known side"},
         {sphere.level >= -1, ".level", "below -1"},
+        {sphere.part < asset_.part_count(), ".part", "past the body parts"},
         {sphere.reserved == 0, ".reserved", "not 0"},
     };
     for (const auto& rule : rules) {

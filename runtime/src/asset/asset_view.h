@@ -18,7 +18,7 @@ namespace schema {
 struct Asset;
 }
 
-inline constexpr std::uint32_t kFormatVersion = 5;
+inline constexpr std::uint32_t kFormatVersion = 6;
 inline constexpr std::uint32_t kMaxSphereCount = 65535, kMaxPartCount = 255;
 
 enum class RefitRule : std::uint8_t { kPaper = 0, kMoments = 1 };
@@ -39,7 +39,8 @@ struct RestSphere {
   std::uint8_t region;
   std::uint8_t side;  // of Side
   std::int16_t level;
-  std::uint16_t reserved;
+  std::uint8_t part;
+  std::uint8_t reserved;
 };
 
 struct RestPair {

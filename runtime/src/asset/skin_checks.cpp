@@ -33,7 +33,7 @@ class SkinChecker {
 
   bool run() {
     return check_vertices() && check_influences() && check_morphs() && check_clusters() && check_parts() &&
-           check_bounds() && check_hulls() && check_rest_contacts() && check_sizes();
+           check_bounds() && check_hulls() && check_layers() && check_windings() && check_sizes();
   }
 
  private:
@@ -161,8 +161,9 @@ class SkinChecker {
   bool check_cluster(std::size_t c, Stream& vertices, Stream& bones) {
     const PackedCluster& cluster = skin_.clusters[c];
     if (cluster.vertex_count == 0 || cluster.vertex_count > kMaxClusterVertices ||
-        (cluster.bone_count > 0) != (asset_.bone_count() > 0)) {
-      return message_.wrong_at("skin.clusters", c, "its vertex_count is not 1 to 192, or its bones are none");
+        (cluster.bone_count > 0) != (asset_.bone_count() > 0) || cluster.is_buried > 1 || cluster.reserved != 0) {
+      return message_.wrong_at("skin.clusters", c,
+                               "its vertex_count is not 1 to 192, its bones are none, or a flag is not 0 or 1");
     }
     if (3 * (sizes_.triangles + cluster.triangle_count) > skin_.corners.size) {
       return message_.wrong_at("skin.clusters", c, "its corners are missing");
@@ -212,19 +213,22 @@ class SkinChecker {
            check_stream(skin_.triangles, sizes_.triangles, asset_.info().triangle_count, "skin.triangles");
   }
 
-  bool check_parts() {
-    Stream ends_of_runs(skin_.part_run_ends);
+  // Runs of triangles that tile them all: the value of each is below `limit`.
+  bool check_runs(Bytes values, Bytes run_ends, std::size_t limit, const char* name) {
+    Stream ends_of_runs(run_ends);
     std::uint32_t before = 0;
-    for (std::size_t i = 0; i < skin_.part_runs.size; ++i) {
+    for (std::size_t i = 0; i < values.size; ++i) {
       std::uint32_t end = 0;
-      if (!ends_of_runs.read(end) || end <= before || skin_.part_runs[i] >= asset_.part_count()) {
-        return message_.wrong_at("skin.part_runs", i,
-                                 "past the parts, or its end is missing or not above the one before");
+      if (!ends_of_runs.read(end) || end <= before || values[i] >= limit) {
+        return message_.wrong_at(name, i, "no such value, or its end is missing or not above the one before");
       }
       before = end;
     }
-    return message_.has_size("skin.part_runs", before, sizes_.triangles, "triangles") &&
-           ends(ends_of_runs, "skin.part_run_ends");
+    return message_.has_size(name, before, sizes_.triangles, "triangles") && ends(ends_of_runs, name);
+  }
+
+  bool check_parts() {
+    return check_runs(skin_.part_runs, skin_.part_run_ends, asset_.part_count(), "skin.part_runs");
   }
 
   std::size_t lanes_of(std::size_t group) const {
@@ -320,10 +324,20 @@ class SkinChecker {
            check_stream(skin_.hull_points, sizes_.hull_points, sizes_.vertices, "skin.hull_points");
   }
 
-  bool check_rest_contacts() {
-    return check_pairs(skin_.rest_contacts, asset_.info().triangle_count, "skin.rest_contacts",
-                       "a is not below b, or not sorted", sizes_.rest_contacts,
-                       [](const Pair& before, const Pair& pair) { return pair.a < pair.b && before < pair; });
+  bool check_layers() {
+    const auto is_sorted = [](const Pair& before, const Pair& pair) { return pair.a < pair.b && before < pair; };
+    const char* const fault = "a is not below b, or not sorted";
+    return check_pairs(skin_.rest_contacts, asset_.info().triangle_count, "skin.rest_contacts", fault,
+                       sizes_.rest_contacts, is_sorted) &&
+           check_pairs(skin_.layer_pairs, sizes_.clusters, "skin.layer_pairs", fault, sizes_.layer_pairs, is_sorted) &&
+           check_runs(skin_.layer_runs, skin_.layer_run_ends, 2 * kIsDouble, "skin.layer_runs");
+  }
+
+  bool check_windings() {
+    const std::size_t points = kCorePoints * asset_.part_count();
+    return message_.has_size("skin.windings", skin_.windings.size, 3 * asset_.spheres().size, "spheres, thrice") &&
+           message_.has_size("skin.core_windings", skin_.core_windings.size, 3 * points, "core points, thrice") &&
+           check_stream(skin_.core_triangles, points, sizes_.triangles + 1, "skin.core_triangles");
   }
 
   bool check_sizes() {

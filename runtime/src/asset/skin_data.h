@@ -17,6 +17,8 @@ inline constexpr std::size_t kMaxClusterVertices = 3 * kMaxClusterTriangles;
 inline constexpr std::size_t kHullLanes = 16;  // a hull's points are a multiple of it
 
 inline constexpr std::uint8_t kOneWeightLeftOut = 128;  // bit of an influence count
+inline constexpr std::uint8_t kIsCovered = 1, kIsInsideOut = 2, kIsDouble = 4;  // bits of a run of layers
+inline constexpr std::size_t kCorePoints = 128;         // a part: see core_point()
 
 // Eight balls, or boxes along the axes, one a lane.
 struct BallLanes {
@@ -36,6 +38,7 @@ struct BoundsTerm {
 struct PackedCluster {
   std::uint8_t triangle_count, vertex_count;
   std::uint16_t bone_count;
+  std::uint8_t is_buried, reserved;
 };
 
 struct PackedHull {
@@ -58,15 +61,16 @@ struct MorphDelta {
 struct SkinSizes {
   std::size_t triangles = 0, clusters = 0, vertices = 0, influences = 0;
   std::size_t cluster_vertices = 0, cluster_bones = 0, slots = 0, weights = 0, slot_morphs = 0;
-  std::size_t rest_contacts = 0, hulls = 0, hull_bones = 0, hull_points = 0, hull_weights = 0;
+  std::size_t rest_contacts = 0, layer_pairs = 0, hulls = 0, hull_bones = 0, hull_points = 0, hull_weights = 0;
 };
 
 struct SkinData {
   SkinSizes sizes;
   Span<const std::uint8_t> triangles, cluster_vertices, cluster_bones, sources, welds;  // streams
   Span<const std::uint8_t> influence_bones, rest_contacts, hull_points;                 // likewise
-  Span<const std::uint8_t> part_run_ends;                                               // likewise
-  Span<const std::uint8_t> part_runs, corners, influence_counts;
+  Span<const std::uint8_t> part_run_ends, layer_pairs, layer_run_ends, core_triangles;  // likewise
+  Span<const std::uint8_t> part_runs, layer_runs, corners, influence_counts;
+  Span<const std::int8_t> windings, core_windings;
   Span<const std::uint16_t> morph_counts;
   Span<const PackedCluster> clusters;
   Span<const float> positions, influence_weights;

@@ -40,6 +40,7 @@ struct PosedClusters {
   Span<const Pair> candidates;                   // of spheres: the pairs to decide; null: those of the scope
   Span<const Pair> candidate_clusters;           // of loaded clusters: the pairs to decide; null: those of spheres
   bool apart = true, neighbours = false;         // which of them to pair: see sc_scope
+  bool layers = true;                            // pairs clusters that are layers of one place, too
   bool has_sphere_boxes = false;                 // those below are of this pose already
   bool first_only = false;                       // of each two spheres no more once one candidate is a contact
   const float* positions = nullptr;              // the source's; null: from bones

@@ -4,7 +4,6 @@
 
 #include "runtime/src/base/double3.h"
 #include "runtime/src/pose/pose.h"
-#include "runtime/src/skin/covered.h"
 #include "runtime/src/skin/skin_table.h"
 
 namespace spherechain {

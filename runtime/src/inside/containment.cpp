@@ -78,13 +78,13 @@ double Containment::swallowed(std::size_t part, std::size_t other) const {
 bool Containment::passes_through(std::size_t part, std::size_t other) const {
   std::size_t limb[kLimbMost], count = 0, region = kOutside;
   bool is_held = false;
-  for (std::size_t s = 0; inside_ != nullptr && s < surface_.sphere_parts.size; ++s) {
-    if (surface_.sphere_parts[s] == part && inside_[s] == other && is_core(surface_, s)) {
+  for (std::size_t s = 0; inside_ != nullptr && s < asset_.spheres().size; ++s) {
+    if (asset_.spheres()[s].part == part && inside_[s] == other && is_core(surface_, s)) {
       region = asset_.spheres()[s].region;
       is_held = true;
     }
   }
-  for (std::size_t s = 0; is_held && s < surface_.sphere_parts.size; ++s) {
+  for (std::size_t s = 0; is_held && s < asset_.spheres().size; ++s) {
     if (asset_.spheres()[s].region == region && is_core(surface_, s)) {
       if (count == kLimbMost) {
         return false;

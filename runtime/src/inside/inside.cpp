@@ -17,7 +17,7 @@ constexpr int kHalvesMin = 4;  // of six
 class Winding : public Crossings {
  public:
   explicit Winding(const Surface& surface) : surface_(surface) {}
-  void add(std::uint32_t triangle, int side, double) override { total += side * surface_.facings[triangle]; }
+  void add(std::uint32_t triangle, int side, double) override { total += side * facing(surface_, triangle); }
 
   int total = 0;
 
@@ -38,7 +38,7 @@ class Enclosing : public Crossings {
       : test_(test), probe_(probe), handedness_(handedness) {}
 
   void add(std::uint32_t triangle, int side, double height) override {
-    Entry entry{std::abs(height), triangle, side * test_.skin.surface->facings[triangle] * handedness_ > 0};
+    Entry entry{std::abs(height), triangle, side * facing(*test_.skin.surface, triangle) * handedness_ > 0};
     entry.is_left = entry.is_left == (height > 0);
     Half& half = halves_[height > 0 ? 0 : 1];
     std::size_t place = half.count;
@@ -146,9 +146,9 @@ class Tester {
       const Sphere& center = test_.centers[s];
       if ((test_.asked[s / 64] >> s % 64 & 1) != 0 && is_finite(center) && is_core(test_.surface, s)) {
         visit(s, Probe{{center.x, center.y, center.z},
-                       test_.surface.rest_windings.data + 3 * s,
+                       test_.surface.windings.data + 3 * s,
                        s,
-                       test_.surface.sphere_parts[s]});
+                       test_.asset.spheres()[s].part});
       }
     }
   }
@@ -237,7 +237,7 @@ class Tester {
 }  // namespace
 
 bool is_core(const Surface& surface, std::size_t sphere) {
-  return middle_of(surface.rest_windings.data + 3 * sphere) > 0;
+  return middle_of(surface.windings.data + 3 * sphere) > 0;
 }
 
 void find_inside(const InsideTest& test) { Tester(test).run(); }

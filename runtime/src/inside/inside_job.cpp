@@ -47,7 +47,7 @@ void InsideJob::run() const {
     }
   }
   for (std::size_t s = 0; body.ignored_parts != nullptr && s < asset.spheres().size; ++s) {
-    const std::size_t part = surface.sphere_parts[s];
+    const std::size_t part = asset.spheres()[s].part;
     if ((body.ignored_parts[part / 64] >> part % 64 & 1) != 0) {
       memory.asked[s / 64] &= ~(std::uint64_t{1} << s % 64);
     }

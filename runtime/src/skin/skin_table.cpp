@@ -8,11 +8,10 @@
 
 #include "runtime/src/base/double3.h"
 #include "runtime/src/base/memory.h"
+#include "runtime/src/base/pair_bits.h"
 #include "runtime/src/base/status.h"
 #include "runtime/src/base/stream.h"
-#include "runtime/src/skin/covered.h"
 #include "runtime/src/skin/job_body.h"
-#include "runtime/src/skin/windings.h"
 
 namespace spherechain {
 namespace {
@@ -34,7 +33,6 @@ Header header_of(const AssetView& asset, const std::uint64_t* words) {
 // While the table is filled: where a vertex' bones, weights and morphs start; and the bones.
 struct VertexTable {
   Span<std::uint32_t> first_bones, first_weights, first_morphs, bones;
-  WindingScratch windings;
 };
 
 // Sets the table's arrays; of null words only counts them.
@@ -47,8 +45,8 @@ std::size_t lay_out(const AssetView& asset, std::uint64_t* words, Surface& out, 
   memory.take(out.first_clusters, asset.spheres().size + 1);
   memory.take(out.cluster_vertices, sizes.cluster_vertices);
   memory.take(out.cluster_bones, sizes.cluster_bones);
-  memory.take(out.parts, bytes_of_parts(sizes.triangles));
-  out.parts.size = sizes.triangles;
+  memory.take(out.parts, sizes.triangles);
+  memory.take(out.layers, sizes.triangles);
   memory.take(out.triangle_vertices, 3 * sizes.triangles);
   memory.take(out.triangle_spheres, sizes.triangles);
   memory.take(out.place_of_source, asset.info().triangle_count);
@@ -69,14 +67,11 @@ std::size_t lay_out(const AssetView& asset, std::uint64_t* words, Surface& out, 
   memory.take(out.hulls, sizes.hulls);
   memory.take(out.hull_points, 3 * sizes.hull_points);
   memory.take(out.hull_weights, sizes.hull_weights);
-  memory.take(out.facings, sizes.triangles);
-  memory.take(out.rest_windings, 3 * asset.spheres().size);
-  memory.take(out.sphere_parts, asset.spheres().size);
+  memory.take(out.first_of_layers, sizes.clusters + 1);
+  memory.take(out.layer_words, 2 * sizes.layer_pairs);
+  memory.take(out.layer_bits, 2 * sizes.layer_pairs);
+  memory.take(out.buried, words_for(sizes.clusters));
   memory.take(out.core_triangles, kCorePoints * asset.part_count());
-  memory.take(out.core_windings, 3 * kCorePoints * asset.part_count());
-  memory.take(vertices.windings.next, sizes.triangles);
-  memory.take(vertices.windings.first_of_corner, sizes.vertices);
-  memory.take(vertices.windings.pieces, sizes.vertices);
   memory.take(vertices.first_bones, sizes.vertices + 1);
   memory.take(vertices.first_weights, sizes.vertices);
   memory.take(vertices.first_morphs, sizes.vertices + 1);
@@ -89,6 +84,8 @@ std::size_t lay_out(const AssetView& asset, std::uint64_t* words, Surface& out, 
   out.bounds_morph_targets = skin.bounds_morph_targets;
   out.bounds_morphs = skin.bounds_morphs;
   out.hull_bones = skin.hull_bones;
+  out.windings = skin.windings;
+  out.core_windings = skin.core_windings;
   return memory.used();
 }
 
@@ -101,11 +98,13 @@ class Filler {
     fill_vertices();
     fill_clusters();
     fill_reach();
-    fill_parts();
+    fill_runs(skin_.part_runs, skin_.part_run_ends, out_.parts);
+    fill_runs(skin_.layer_runs, skin_.layer_run_ends, out_.layers);
+    fill_layers();
     fill_hulls();
     fill_starts(skin_.bounds_term_counts, out_.bounds_first_terms);
     fill_starts(skin_.bounds_morph_counts, out_.bounds_first_morphs);
-    Stream triangles(skin_.triangles), pairs(skin_.rest_contacts);
+    Stream triangles(skin_.triangles), pairs(skin_.rest_contacts), cores(skin_.core_triangles);
     std::fill(out_.place_of_source.begin(), out_.place_of_source.end(), kNoPlace);
     for (std::uint32_t t = 0; t < out_.triangles.size; ++t) {
       out_.triangles[t] = triangles.next();
@@ -113,13 +112,14 @@ class Filler {
     }
     fill_part_runs();
     fill_pieces();
-    find_covered(out_);
     fill_part_areas();
     for (Pair& pair : out_.rest_contacts) {
       pair.a = pairs.next();
       pair.b = pairs.next();
     }
-    find_windings(asset_, out_, vertices_.windings);
+    for (std::uint32_t& core : out_.core_triangles) {
+      core = cores.next() - 1;  // 0 is kNoPlace
+    }
   }
 
  private:
@@ -286,14 +286,55 @@ class Filler {
     }
   }
 
-  void fill_parts() const {
-    Stream ends(skin_.part_run_ends);
+  static void fill_runs(Span<const std::uint8_t> values, Span<const std::uint8_t> run_ends, Span<std::uint8_t> out) {
+    Stream ends(run_ends);
     std::size_t triangle = 0;
-    for (const std::uint8_t part : skin_.part_runs) {
+    for (const std::uint8_t value : values) {
       for (const std::size_t end = ends.next(); triangle < end; ++triangle) {
-        out_.parts[triangle] = part;
+        out[triangle] = value;
       }
     }
+  }
+
+  template <typename Visit>
+  void for_layers(const Visit& visit) const {
+    Stream pairs(skin_.layer_pairs);
+    while (pairs.has_more()) {
+      const std::uint32_t a = pairs.next(), b = pairs.next();
+      visit(a, b);
+      visit(b, a);
+    }
+  }
+  // Pairs are sorted, so that the words of a row ascend, too.
+  void fill_layers() const {
+    std::fill(out_.buried.begin(), out_.buried.end(), std::uint64_t{0});
+    for (std::size_t c = 0; c < out_.clusters.size; ++c) {
+      out_.buried[c / 64] |= std::uint64_t{skin_.clusters[c].is_buried} << c % 64;
+    }
+    // A row's start is first its length, then where it has been filled up to, which is the next one's start.
+    std::uint32_t* const ends = out_.first_of_layers.data;
+    std::fill(out_.first_of_layers.begin(), out_.first_of_layers.end(), 0U);
+    for_layers([&](std::uint32_t of, std::uint32_t) { ++ends[of + 1]; });
+    for (std::size_t c = 1; c < out_.first_of_layers.size; ++c) {
+      ends[c] += ends[c - 1];
+    }
+    for_layers([&](std::uint32_t of, std::uint32_t other) {
+      out_.layer_words[ends[of]] = other / 64;
+      out_.layer_bits[ends[of]++] = std::uint64_t{1} << other % 64;
+    });
+    std::uint32_t first = 0, kept = 0;
+    for (std::size_t c = 0; c < out_.clusters.size; ++c) {
+      const std::uint32_t end = ends[c], own = kept;
+      for (; first < end; ++first) {
+        const bool goes_on = kept > own && out_.layer_words[kept - 1] == out_.layer_words[first];
+        const std::uint64_t bits = (goes_on ? out_.layer_bits[kept - 1] : 0) | out_.layer_bits[first];
+        kept += goes_on ? 0 : 1;
+        out_.layer_words[kept - 1] = out_.layer_words[first];
+        out_.layer_bits[kept - 1] = bits;
+      }
+      ends[c] = own;
+    }
+    ends[out_.clusters.size] = kept;
   }
 
   // Calls visit(part, run) for each run of consecutive triangles of one part within a cluster.

@@ -68,6 +68,7 @@ struct Surface {
   Span<std::uint32_t> cluster_vertices;     // the vertex in a slot: ascending in a cluster
   Span<std::uint32_t> cluster_bones;        // ascending in a cluster
   Span<std::uint8_t> parts;                 // of each triangle
+  Span<std::uint8_t> layers;                // of each triangle: bits kIsCovered, kIsInsideOut and kIsDouble
   Span<std::uint32_t> triangle_vertices;    // three of each triangle
   Span<std::uint16_t> triangle_spheres;     // of each triangle
   Span<std::uint32_t> place_of_source;      // a source triangle's place in `triangles`; kNoPlace where it is not there
@@ -89,13 +90,13 @@ struct Surface {
   Span<Hull> hulls;          // a sphere's
   Span<float> hull_points;   // of a hull all x, all y, all z
   Span<float> hull_weights;  // of a hull its first bone's of all points, its second's ...
-  // How often the skin winds around a point: see windings.h.
-  Span<std::int8_t> facings;        // of each triangle: -1 of a piece that is inside out at rest; 0: it does not count
-  Span<std::int8_t> rest_windings;  // around each sphere's centre at rest, as counted along x, y and z
-  Span<std::uint8_t> sphere_parts;  // the part that most of a sphere's triangles are of
-  // kCorePoints of each part: see core_point().
-  Span<std::uint32_t> core_triangles;  // kNoPlace where no skin encloses the point at rest
-  Span<std::int8_t> core_windings;     // around each at rest, along x, y and z
+  // Clusters that are layers of one place, the one over the other, in rows of bits: bit k of layer_bits[i] is of cluster
+  // 64 layer_words[i] + k.
+  Span<std::uint32_t> first_of_layers;  // a cluster's in the two below, and the end
+  Span<std::uint32_t> layer_words;      // ascending in a row
+  Span<std::uint64_t> layer_bits;
+  Span<std::uint64_t> buried;          // a bit for each cluster that other pieces lie closely over
+  Span<std::uint32_t> core_triangles;  // of kCorePoints a part: kNoPlace where no skin encloses the point at rest
 
   // The asset's own.
   Span<const float> rest_positions;             // x, y, z of each vertex
@@ -106,6 +107,9 @@ struct Surface {
   Span<const std::uint32_t> bounds_morph_targets;  // an entry's of bounds_morphs, ascending in a group
   Span<const BallLanes> bounds_morphs;             // around the deltas of a cluster's vertices
   Span<const HullBone> hull_bones;                 // of hull after hull
+  // How often the skin winds around a point at rest, as counted along x, y and z: see windings.h.
+  Span<const std::int8_t> windings;       // around each sphere's centre
+  Span<const std::int8_t> core_windings;  // around each core point
 };
 
 inline Span<const TriangleRun> runs_of(const Surface& surface, std::size_t part) {
@@ -113,7 +117,16 @@ inline Span<const TriangleRun> runs_of(const Surface& surface, std::size_t part)
   return {surface.part_runs.data + first, surface.first_of_part[part + 1] - first};
 }
 
-inline constexpr std::size_t kCorePoints = 128;
+// True of triangles that other pieces of the skin hide at rest: a body below a suit, teeth, the lining of a coat.
+inline bool is_covered(const Surface& surface, std::size_t triangle) {
+  return (surface.layers[triangle] & kIsCovered) != 0;
+}
+
+// -1 of a piece that is inside out at rest; 0: other triangles count for this one.
+inline int facing(const Surface& surface, std::size_t triangle) {
+  const unsigned layer = surface.layers[triangle];
+  return (layer & kIsDouble) != 0 ? 0 : (layer & kIsInsideOut) != 0 ? -1 : 1;
+}
 
 // Hands out arrays of a caller's words, each from a cache line on, and with a line to spare: vectors of any target may
 // be read and written that far past its end. With null words it only counts how many there have to be.

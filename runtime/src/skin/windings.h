@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How often the skin winds around the spheres' centres and around core points at rest, and which triangles count for
-// it.
+// How often the skin winds around a point, as counted along x, y and z.
 #pragma once
 
 #include <algorithm>
@@ -19,18 +18,5 @@ T middle_of(const T* counts) {
 
 // At rest the skin is closed around a point where it winds around it equally often along each axis.
 inline bool is_closed(const std::int8_t* at_rest) { return at_rest[0] == at_rest[1] && at_rest[1] == at_rest[2]; }
-
-// Memory while the windings are found.
-struct PieceSum {
-  double middle[3], area, volume;
-};
-struct WindingScratch {
-  Span<std::uint32_t> next;             // a triangle's
-  Span<std::uint32_t> first_of_corner;  // a vertex'
-  Span<PieceSum> pieces;                // a vertex'
-};
-
-// Fills from Surface::facings on, from a table that is filled but for these.
-void find_windings(const AssetView& asset, const Surface& surface, const WindingScratch& scratch);
 
 }  // namespace spherechain

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT
-#include "runtime/src/skin/covered.h"
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "baker/layers/covered.h"
 
 #include <algorithm>
 #include <cfloat>
@@ -216,25 +216,23 @@ class Looker {
 
 }  // namespace
 
-void find_covered(const Surface& surface) {
-  std::uint8_t* const out = surface.parts.data + surface.parts.size;
-  std::fill(out, out + surface.parts.size, std::uint8_t{0});
+namespace baker {
+
+std::vector<char> find_covered(const Surface& surface) {
+  std::vector<char> out(surface.triangles.size, 0);
   const auto piece = [&](std::size_t t) { return surface.pieces[surface.triangle_vertices[3 * t]]; };
   bool is_one_piece = true;
-  for (std::size_t t = 0; t < surface.parts.size; ++t) {
-    is_one_piece = is_one_piece && piece(t) == piece(0);
-  }
-  if (is_one_piece) {
-    return;
-  }
+  for (std::size_t t = 0; t < out.size(); ++t) is_one_piece = is_one_piece && piece(t) == piece(0);
+  if (is_one_piece) return out;
   Looker looker(surface);
   for (const Cluster& cluster : surface.clusters) {
     for (std::size_t i = 0; i < cluster.triangle_count; ++i) {
       const std::size_t t = std::size_t{cluster.first_triangle} + i;
-      const bool is_as_before = i % kRun != 0 && piece(t) == piece(t - 1);
-      out[t] = is_as_before ? out[t - 1] : looker.is_covered(t) ? 1 : 0;
+      out[t] = i % kRun != 0 ? out[t - 1] : looker.is_covered(t) ? 1 : 0;
     }
   }
+  return out;
 }
 
+}  // namespace baker
 }  // namespace spherechain

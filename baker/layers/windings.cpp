@@ -1,13 +1,15 @@
-// SPDX-License-Identifier: MIT
-#include "runtime/src/skin/windings.h"
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "baker/layers/windings.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include "runtime/src/base/double3.h"
 #include "runtime/src/skin/core_point.h"
+#include "runtime/src/skin/windings.h"
 #include "runtime/src/triangles/crossing.h"
 
 namespace spherechain {
@@ -35,28 +37,29 @@ void corners_at_rest(const Surface& surface, std::size_t triangle, float (&out)[
 }
 
 // Some triangles have the same corners, as front and back of a double-sided skin: the first in the source counts.
-void drop_doubles(const Surface& surface, const WindingScratch& scratch) {
-  std::fill(surface.facings.begin(), surface.facings.end(), std::int8_t{1});
-  // Triangles in lists, by their lowest corner.
-  std::fill(scratch.first_of_corner.begin(), scratch.first_of_corner.end(), kNoPlace);
+void drop_doubles(const Surface& surface) {
+  std::vector<std::uint32_t> first_of_corner(surface.rest_positions.size / 3, kNoPlace), next(surface.triangles.size);
   for (std::uint32_t t = 0; t < surface.triangles.size; ++t) {
     const Welds own(surface, t);
-    std::uint32_t& first = scratch.first_of_corner[own.low];
-    for (std::uint32_t other = first; other != kNoPlace; other = scratch.next[other]) {
-      if (surface.facings[other] != 0 && own == Welds(surface, other)) {
-        const bool is_later = surface.triangles[t] > surface.triangles[other];
-        surface.facings[is_later ? t : other] = 0;
+    std::uint32_t& first = first_of_corner[own.low];
+    for (std::uint32_t other = first; other != kNoPlace; other = next[other]) {
+      if (facing(surface, other) != 0 && own == Welds(surface, other)) {
+        surface.layers[surface.triangles[t] > surface.triangles[other] ? t : other] |= kIsDouble;
         break;
       }
     }
-    scratch.next[t] = std::exchange(first, t);
+    next[t] = std::exchange(first, t);
   }
 }
 
+struct PieceSum {
+  double middle[3], area, volume;
+};
+
 // A piece that encloses a negative volume, seen from its middle, is inside out: its triangles count the other way
 // round.
-void turn_pieces(const Surface& surface, Span<PieceSum> pieces) {
-  std::fill(pieces.begin(), pieces.end(), PieceSum{});
+void turn_pieces(const Surface& surface) {
+  std::vector<PieceSum> pieces(surface.pieces.size);
   const auto for_all = [&](const auto& visit) {
     for (std::size_t t = 0; t < surface.triangles.size; ++t) {
       float at[3][3];
@@ -77,7 +80,7 @@ void turn_pieces(const Surface& surface, Span<PieceSum> pieces) {
     piece.area += area;
   });
   for_all([&](std::size_t t, PieceSum& piece, const Double3(&p)[3], const Double3& normal) {
-    if (surface.facings[t] != 0 && piece.area > 0) {
+    if (facing(surface, t) != 0 && piece.area > 0) {
       piece.volume +=
           dot(normal, p[0]) -
           (normal.x * piece.middle[0] + normal.y * piece.middle[1] + normal.z * piece.middle[2]) / piece.area;
@@ -85,7 +88,7 @@ void turn_pieces(const Surface& surface, Span<PieceSum> pieces) {
   });
   for (std::size_t t = 0; t < surface.triangles.size; ++t) {
     if (pieces[surface.pieces[surface.triangle_vertices[3 * t]]].volume < 0) {
-      surface.facings[t] = static_cast<std::int8_t>(-surface.facings[t]);
+      surface.layers[t] |= kIsInsideOut;
     }
   }
 }
@@ -129,7 +132,7 @@ int winding_at_rest(const Surface& surface, const float (&from)[3], std::size_t 
       float corners[3][3];
       corners_at_rest(surface, t, corners);
       const Crossing crossing = cross_line(corners, from, axis);
-      out += crossing.height > 0 ? crossing.side * surface.facings[t] : 0;
+      out += crossing.height > 0 ? crossing.side * facing(surface, t) : 0;
     }
   }
   return std::max(-127, std::min(out, 127));
@@ -147,7 +150,7 @@ void find_windings_of(const Surface& surface, const Vec3& point, bool one_axis, 
 }
 
 // Spreads core points over a part's skin by its area.
-void find_core(const AssetView& asset, const Surface& surface, std::size_t part) {
+void find_core(const AssetView& asset, const Surface& surface, std::size_t part, baker::Windings& out) {
   const Span<const TriangleRun> runs = runs_of(surface, part);
   const auto for_triangles = [&](const auto& visit) {
     for (const TriangleRun& run : runs) {
@@ -155,9 +158,7 @@ void find_core(const AssetView& asset, const Surface& surface, std::size_t part)
         float at[3][3];
         corners_at_rest(surface, t, at);
         Double3 p[3];
-        for (std::size_t k = 0; k < 3; ++k) {
-          p[k] = {double{at[k][0]}, double{at[k][1]}, double{at[k][2]}};
-        }
+        for (std::size_t k = 0; k < 3; ++k) p[k] = {double{at[k][0]}, double{at[k][1]}, double{at[k][2]}};
         visit(t, at, length(cross(p[1] - p[0], p[2] - p[0])));
       }
     }
@@ -169,46 +170,34 @@ void find_core(const AssetView& asset, const Surface& surface, std::size_t part)
     before += area;
     for (; k < kCorePoints && before * double{kCorePoints} > (static_cast<double>(k) + 0.5) * all; ++k) {
       const std::size_t place = kCorePoints * part + k;
-      std::int8_t* const windings = surface.core_windings.data + 3 * place;
+      std::int8_t* const windings = out.of_cores.data() + 3 * place;
       const std::size_t sphere = surface.triangle_spheres[t];
-      const bool one_axis = is_closed(surface.rest_windings.data + 3 * sphere);
+      const bool one_axis = is_closed(out.of_spheres.data() + 3 * sphere);
       find_windings_of(surface, core_point(at, asset.spheres()[sphere].center, k), one_axis, windings);
-      surface.core_triangles[place] = middle_of(windings) > 0 ? t : kNoPlace;
+      if (middle_of(windings) > 0) out.core_triangles[place] = t + 1;
     }
   });
 }
 
-// The part that most of a sphere's triangles are of.
-std::uint8_t part_of(const Surface& surface, std::size_t sphere, std::uint32_t (&counts)[256]) {
-  std::fill(counts, counts + 256, 0U);
-  std::uint8_t most = 0;
-  for (std::size_t c = surface.first_clusters[sphere]; c < surface.first_clusters[sphere + 1]; ++c) {
-    const Cluster& cluster = surface.clusters[c];
-    for (std::size_t t = cluster.first_triangle; t < cluster.first_triangle + std::size_t{cluster.triangle_count};
-         ++t) {
-      ++counts[surface.parts[t]];
-    }
-  }
-  for (std::size_t part = 1; part < 256; ++part) {
-    most = counts[part] > counts[most] ? static_cast<std::uint8_t>(part) : most;
-  }
-  return most;
-}
-
 }  // namespace
 
-void find_windings(const AssetView& asset, const Surface& surface, const WindingScratch& scratch) {
-  drop_doubles(surface, scratch);
-  turn_pieces(surface, scratch.pieces);
-  std::uint32_t counts[256];
-  for (std::size_t s = 0; s < asset.spheres().size; ++s) {
-    surface.sphere_parts[s] = part_of(surface, s, counts);
-    find_windings_of(surface, asset.spheres()[s].center, false, surface.rest_windings.data + 3 * s);
-  }
-  std::fill(surface.core_triangles.begin(), surface.core_triangles.end(), kNoPlace);
-  for (std::size_t part = 0; part < asset.part_count(); ++part) {
-    find_core(asset, surface, part);
-  }
+namespace baker {
+
+void find_facings(const Surface& surface) {
+  drop_doubles(surface);
+  turn_pieces(surface);
 }
 
+Windings find_windings(const AssetView& asset, const Surface& surface) {
+  const std::size_t cores = kCorePoints * asset.part_count();
+  Windings out{std::vector<std::int8_t>(3 * asset.spheres().size, 0), std::vector<std::uint32_t>(cores, 0),
+               std::vector<std::int8_t>(3 * cores, 0)};
+  for (std::size_t s = 0; s < asset.spheres().size; ++s) {
+    find_windings_of(surface, asset.spheres()[s].center, false, out.of_spheres.data() + 3 * s);
+  }
+  for (std::size_t part = 0; part < asset.part_count(); ++part) find_core(asset, surface, part, out);
+  return out;
+}
+
+}  // namespace baker
 }  // namespace spherechain
