@@ -12,9 +12,11 @@ namespace spherechain {
 namespace {
 
 // Lengths are shares of the height.
-constexpr double kReach = 0.06;      // a layer is not farther from what it lies over
+constexpr double kReach = 0.15;      // a layer that moves as what it lies over is not farther from it
+constexpr double kLoose = 0.06;      // nor is another one
 constexpr double kTight = 0.03;      // nor is one that buries
 constexpr double kMoveAlike = 0.5;   // weight of bones that move both, where one buries the other
+constexpr double kMoveAsOne = 0.95;  // and where it does so at any distance
 constexpr double kNear = 0.035;      // between the vertices of two clusters that are layers of one place
 constexpr double kMiddles = 0.07;    // between their middles, and to where the one lies over the other
 constexpr double kStep = 1e-5;       // off a triangle, before a look
@@ -134,15 +136,16 @@ class Stacker {
     return out;
   }
 
-  bool move_alike(std::uint32_t cluster, std::uint32_t triangle, const Hit& hit) const {
-    if (surface_.bone_boxes.size == 0) return true;
+  // Weight of the bones that move a triangle, and the one over it.
+  double shared_weight(std::uint32_t cluster, std::uint32_t triangle, const Hit& hit) const {
+    if (surface_.bone_boxes.size == 0) return 1;
     double shared = 0;
     const std::map<std::uint32_t, double> others = weights_of(hit.cluster, hit.triangle);
     for (const auto& [bone, weight] : weights_of(cluster, triangle)) {
       const auto other = others.find(bone);
       shared += other == others.end() ? 0 : std::min(weight, other->second);
     }
-    return shared >= kMoveAlike;
+    return shared;
   }
 
   // Notes what lies over a cluster. Does it bury it?
@@ -153,8 +156,14 @@ class Stacker {
       is_buried = is_buried && is_covered(surface_, t);
       if ((t - of.first_triangle) % kEvery != 0) continue;
       const Hit hit = look(cluster, t);
-      if (hit.cluster != kNoPlace && (hit.from_behind || is_covered(surface_, t))) add_over(cluster, hit.cluster);
-      is_buried = is_buried && hit.distance <= kTight * height_ && move_alike(cluster, t, hit);
+      if (hit.cluster == kNoPlace) {
+        is_buried = false;
+        continue;
+      }
+      const double shared = shared_weight(cluster, t, hit);
+      is_buried = is_buried && shared >= (hit.distance <= kTight * height_ ? kMoveAlike : kMoveAsOne);
+      const bool is_near = hit.distance <= kLoose * height_ || shared >= kMoveAsOne;
+      if (is_near && (hit.from_behind || is_covered(surface_, t))) add_over(cluster, hit.cluster);
     }
     return is_buried;
   }
