@@ -208,14 +208,13 @@ class Stacker {
   const AssetView& asset_;
   const Surface& surface_;
   double height_;
-  std::vector<Box> boxes_;  // of the clusters
+  std::vector<Box> boxes_;                                                     // of the clusters
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Over>> over_;  // by pieces, the lower first
 };
 
 }  // namespace
 
-baker::Stack baker::find_stack(const AssetView& asset, const Surface& surface,
-                               const std::vector<Pair>& rest_contacts) {
+baker::Stack baker::find_stack(const AssetView& asset, const Surface& surface, const std::vector<Pair>& rest_contacts) {
   return Stacker(asset, surface).run(rest_contacts);
 }
 

@@ -11,8 +11,8 @@ namespace spherechain::baker {
 // How often the skin winds around points at rest, as counted along x, y and z: three numbers a point.
 struct Windings {
   std::vector<std::int8_t> of_spheres;        // around their centres
-  std::vector<std::uint32_t> core_triangles;  // of kCorePoints a part: 1 more than the triangle's place, 0 where no skin
-                                              // encloses the point
+  std::vector<std::uint32_t> core_triangles;  // of kCorePoints a part: 1 more than the triangle's place, 0 where no
+                                              // skin encloses the point
   std::vector<std::int8_t> of_cores;
 };
 

@@ -58,12 +58,15 @@ Query SkinPlayer::query(Detail detail) const {
   Query out;
   out.detail = detail;
   out.target = target_;
+  out.scope = SC_SCOPE_LAYERS;
   out.classes = ~0U;
   return out;
 }
 
 std::size_t SkinPlayer::count_contacts() {
-  const Contacts found = body_.contacts(query(SC_DETAIL_QUICK));
+  Query asked = query(SC_DETAIL_QUICK);
+  asked.scope = SC_SCOPE_APART;
+  const Contacts found = body_.contacts(asked);
   check_runtime(body_.status());
   return found.part_count;
 }

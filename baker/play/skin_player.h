@@ -74,8 +74,8 @@ class SkinPlayer {
   // The number of pairs of body parts in contact, as a game queries it.
   std::size_t count_contacts();
   // The triangles that intersect, and those that intersect another body's. A list holds until the next question.
-  Span<const TriangleContact> triangles(Scope scope = SC_SCOPE_APART) { return triangles(nullptr, scope); }
-  Span<const TriangleContact> triangles(const SkinPlayer& other) { return triangles(&other, SC_SCOPE_APART); }
+  Span<const TriangleContact> triangles(Scope scope = SC_SCOPE_LAYERS) { return triangles(nullptr, scope); }
+  Span<const TriangleContact> triangles(const SkinPlayer& other) { return triangles(&other, SC_SCOPE_LAYERS); }
 
   // Penetrations of all classes in full, sorted by body parts. `is_next`: the pose follows the last one measured so,
   // and directions may follow that one's. A list holds until the next question.

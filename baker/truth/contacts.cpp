@@ -49,7 +49,7 @@ ContactsFromBones find_contacts_from_bones(const OpenAsset& asset, const Charact
   follow(asset.surface(), out.positions, character.source_triangles);
   SkinPlayer player(asset, target);
   player.set_pose(pose);
-  out.pairs = run(player, SC_SCOPE_APART);
+  out.pairs = run(player, SC_SCOPE_LAYERS);
   out.neighbours = run(player, SC_SCOPE_NEIGHBOURS);
   return out;
 }

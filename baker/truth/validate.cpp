@@ -89,7 +89,7 @@ Frame validate_frame(const Context& context, int index, const std::function<void
   }
   if (settings.contacts) {
     const auto found = [&](Scope scope) { return find_contacts(animated.asset(), positions, scope, settings.target); };
-    frame.contacts = compare(found(SC_SCOPE_APART), frame.truth.pairs);
+    frame.contacts = compare(found(SC_SCOPE_LAYERS), frame.truth.pairs);
     frame.neighbour_contacts = compare(found(SC_SCOPE_NEIGHBOURS), frame.truth.neighbours);
     if (moved_by_bones(animated.asset(), deformation)) {
       // Exact contacts of these very positions, which differ from the baker's by rounding.

@@ -118,7 +118,8 @@ std::vector<std::uint8_t> bytes_of(const AssetSource& in) {
   }
   const std::vector<flatbuffers::Offset<schema::Bone>> bones = create_bones(builder, in.bones);
   const auto moments = create_moments(builder, in.moments);
-  const auto skin = create_skin(builder, in.character, in.bones, in.clusters, in.parts, in.layers, in.spheres.spheres.size());
+  const auto skin =
+      create_skin(builder, in.character, in.bones, in.clusters, in.parts, in.layers, in.spheres.spheres.size());
   const std::vector<std::uint64_t> ignored = ignored_bits(in);
   const std::vector<schema::RestPair> rest_fit = rest_pairs_of(in.binding.rest_fit),
                                       rest_detect = rest_pairs_of(in.binding.rest_detect);

@@ -169,11 +169,11 @@ Runs runs_of(const Character& character, const Clusters& in, const BodyParts& pa
   Runs out;
   std::vector<std::uint8_t> part_of_triangle;
   for (const Cluster& cluster : in.clusters) {
-    out.clusters.emplace_back(static_cast<std::uint8_t>(cluster.triangles.size()),
-                              static_cast<std::uint8_t>(cluster.vertices.size()),
-                              static_cast<std::uint16_t>(cluster.bones.size()),
-                              layers.is_buried.empty() ? std::uint8_t{0} : static_cast<std::uint8_t>(layers.is_buried[out.clusters.size()]),
-                              std::uint8_t{0});
+    out.clusters.emplace_back(
+        static_cast<std::uint8_t>(cluster.triangles.size()), static_cast<std::uint8_t>(cluster.vertices.size()),
+        static_cast<std::uint16_t>(cluster.bones.size()),
+        layers.is_buried.empty() ? std::uint8_t{0} : static_cast<std::uint8_t>(layers.is_buried[out.clusters.size()]),
+        std::uint8_t{0});
     for (const Index vertex : cluster.vertices) out.vertices.put(vertex);
     for (const ClusterBone& bone : cluster.bones) out.bones.put(bone.bone);
     for (const Index t : cluster.triangles) {
@@ -225,8 +225,7 @@ PackedHulls hulls_of(const Clusters& in) {
 
 flatbuffers::Offset<schema::Skin> create_skin(flatbuffers::FlatBufferBuilder& builder, const Character& character,
                                               const BoneBinding& bones, const Clusters& clusters,
-                                              const BodyParts& parts, const Layers& layers,
-                                              std::size_t sphere_count) {
+                                              const BodyParts& parts, const Layers& layers, std::size_t sphere_count) {
   const Vertices vertices = vertices_of(character, clusters);
   const Runs runs = runs_of(character, clusters, parts, layers);
   const Groups groups = group_clusters(clusters.clusters, !bones.bones.empty());

@@ -107,13 +107,13 @@ namespace Spherechain
             }
         }
 
-        /// <summary>Each pair of a sphere of one region with a sphere of the other.</summary>
-        public void IgnoreRegions(int region, int other, bool isIgnored)
+        /// <summary>Each pair of a sphere of one body part with a sphere of the other.</summary>
+        public void IgnoreParts(int part, int other, bool isIgnored)
         {
             fixed (ulong* words = Words)
             {
                 Native.Filter filter = View(words);
-                Done(Native.sc_ignore_regions(model.Asset, &filter, Text.Size(region), Text.Size(other), isIgnored ? 1 : 0));
+                Done(Native.sc_ignore_parts(model.Asset, &filter, Text.Size(part), Text.Size(other), isIgnored ? 1 : 0));
             }
         }
 

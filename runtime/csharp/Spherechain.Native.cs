@@ -171,11 +171,13 @@ namespace Spherechain
 
     public enum Scope : int  // sc_scope
     {
-        /// <summary>of two spheres that are not ignored: no neighbours on the body</summary>
+        /// <summary>of two spheres that are not ignored: no neighbours on the body. Layers of one place are left out: a garment on the body, the skin below it</summary>
         Apart = 0,
         /// <summary>of one sphere, or of two that are ignored: folds of elbow and knee; 40 times dearer</summary>
         Neighbours = 1,
         All = 2,
+        /// <summary>as SC_SCOPE_APART, and layers of one place</summary>
+        Layers = 3,
     }
 
     public enum MatrixLayout : int  // sc_matrix_layout
@@ -232,6 +234,8 @@ namespace Spherechain
         public uint Region;
         /// <summary>of a torso sphere: its height, from the bottom up; else -1</summary>
         public int Level;
+        /// <summary>that most of its triangles are of</summary>
+        public uint Part;
     }
 
     public struct SourceBuffer  // sc_source_buffer
@@ -400,7 +404,7 @@ namespace Spherechain
 #endif
         const CallingConvention Cdecl = CallingConvention.Cdecl;
 
-        public const uint AbiVersion = 14;
+        public const uint AbiVersion = 15;
         public const uint AssetAlignment = 8;
         public const uint Floor = 0xFFFFFFFFu;
         public const uint NoJoint = 0xFFFFFFFFu;
@@ -605,6 +609,8 @@ namespace Spherechain
             /// <summary>out: sc_pair_words() words an instance; or null</summary>
             public ulong* Bits;
             public UIntPtr BitWords;
+            public ulong* PartPairs;
+            public UIntPtr PartPairWords;
             /// <summary>out: sorted by instance, then pair; or null. Entries past pair_count are written too. With several tasks leave room for twice the pairs, or it takes a second pass</summary>
             public CrowdPair* Pairs;
             public UIntPtr PairCapacity;
@@ -666,7 +672,7 @@ namespace Spherechain
         [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_part_words(Asset* asset);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_reset_filter(Asset* asset, Filter* filter);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_ignore_pair(Asset* asset, Filter* filter, uint a, uint b, int ignored);
-        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_ignore_regions(Asset* asset, Filter* filter, UIntPtr region, UIntPtr other, int ignored);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_ignore_parts(Asset* asset, Filter* filter, UIntPtr part, UIntPtr other, int ignored);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_bind_joints(Asset* asset, Bone* joints, UIntPtr joint_count, MatrixLayout inverse_bind_layout, uint* joint_of_bone, UIntPtr capacity, byte* message, UIntPtr message_size);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_gather_bones(Asset* asset, uint* joint_of_bone, Pose* palette, float* bones);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_place_bones(JointTransform* transform, float* bones, UIntPtr bone_count);

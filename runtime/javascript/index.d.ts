@@ -113,8 +113,8 @@ export interface Model {
 export interface Filter {
   /** `isIgnored` false reports the pair, also where the asset ignores it. */
   ignorePair(a: number, b: number, isIgnored?: boolean): void;
-  /** Each pair of a sphere of one region with a sphere of the other; the same region twice: the pairs within it. */
-  ignoreRegions(region: number, other: number, isIgnored?: boolean): void;
+  /** Each pair of a sphere of one body part with a sphere of the other; the same part twice: the pairs within it. */
+  ignoreParts(part: number, other: number, isIgnored?: boolean): void;
   dispose(): void;
 }
 
@@ -154,10 +154,10 @@ export interface Body {
   dispose(): void;
 }
 
-/** The options of a question. Without any it asks what `spherechain play` and `check` ask. */
+/** The options of a question. Without any it asks what a game asks; `spherechain play` and `check` look at layers, too. */
 export interface Query {
-  /** 'apart', if left out: without the folds of neighbouring spheres at elbows and knees; 'neighbours': these alone, 40 times dearer. */
-  scope?: 'apart' | 'neighbours' | 'all';
+  /** 'apart', if left out: without the folds of neighbouring spheres at elbows and knees, and without layers of one place; 'layers': with these; 'neighbours': the folds alone, 40 times dearer. */
+  scope?: 'apart' | 'neighbours' | 'all' | 'layers';
   /** 'full': penetrations that are no faults are measured in full, too. The faults are the same. Contacts list spheres and triangles. */
   detail?: 'quick' | 'full';
   filter?: Filter;

@@ -24,6 +24,7 @@ class RuntimeFinder : public ContactFinder {
         parts_(mesh.character.view().part_count() * (mesh.character.view().part_count() + 1) / 2),
         triangles_(1 << 16) {
     job_.asset = &mesh.character.asset;
+    job_.scope = SC_SCOPE_LAYERS;  // as peers, which know no layers
     job_.skin_table = mesh.skin_table.data()->words;
     job_.scratch = scratch_.data()->words;
     job_.scratch_words = skin_scratch_words(&mesh.character.asset);
@@ -93,6 +94,7 @@ class DepthFinder : public ContactFinder {
         scratch_(memory_for(penetration_scratch_words(&mesh.character.asset, kContactsMax))),
         found_(mesh.character.view().part_count() * (mesh.character.view().part_count() + 1) / 2) {
     job_.asset = &mesh.character.asset;
+    job_.scope = SC_SCOPE_LAYERS;  // as peers, which know no layers
     job_.skin_table = mesh.skin_table.data()->words;
     job_.scratch = scratch_.data()->words;
     job_.scratch_words = penetration_scratch_words(&mesh.character.asset, kContactsMax);

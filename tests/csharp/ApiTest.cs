@@ -193,9 +193,9 @@ public static class ApiTest
         {
             Query full = new Query { Scope = Scope.All, Detail = Detail.Full, Classes = Query.AllClasses };
             Filter nothing = new Filter(model);
-            for (int region = 0; region < model.RegionCount; ++region)
+            for (int part = 0; part < model.PartCount; ++part)
             {
-                for (int other = 0; other <= region; ++other) nothing.IgnoreRegions(region, other, true);
+                for (int other = 0; other <= part; ++other) nothing.IgnoreParts(part, other, true);
             }
             Refused("no sphere", Code.BadValue, "index", "", () => nothing.IgnorePair(0, 100000, true));
             Query limited = new Query { Limit = 1 }, filtered = new Query { Filter = nothing }, rigid = new Query { Rule = Native.sc_default_rule() };

@@ -41,8 +41,8 @@ void ask_source(Case& c) {
 Status edit(Case& c, Filter& filter, sc_code& wanted) {
   const auto draw_sphere = [&] { return static_cast<std::uint32_t>(draw_index(c, c.n)); };
   const std::uint32_t a = draw_sphere(), b = draw_sphere();
-  const std::size_t regions = c.view().region_count();
-  const std::size_t region = draw_index(c, regions), other = draw_index(c, regions);
+  const std::size_t parts = c.view().part_count();
+  const std::size_t part = draw_index(c, parts), other = draw_index(c, parts);
   const int on = c.random.one_in(2) ? 0 : -3;
   const auto wants = [&](bool is_sound) { wanted = is_sound ? SC_OK : SC_BAD_VALUE; };
   switch (c.random.below(3)) {
@@ -50,8 +50,8 @@ Status edit(Case& c, Filter& filter, sc_code& wanted) {
       wants(a < c.n && b < c.n && a != b);
       return sc_ignore_pair(&c.asset, &filter, a, b, on);
     case 1:
-      wants(region < regions && other < regions);
-      return sc_ignore_regions(&c.asset, &filter, region, other, on);
+      wants(part < parts && other < parts);
+      return sc_ignore_parts(&c.asset, &filter, part, other, on);
     default:
       wants(true);
       return sc_reset_filter(&c.asset, &filter);

@@ -15,16 +15,17 @@ constexpr std::size_t kMaxTested = 300;  // triangles: of more, all pairs take t
 constexpr std::size_t kMaxWords = std::size_t{1} << 17;
 
 struct Triangle {
-  std::uint32_t number, sphere, part;
+  std::uint32_t number, sphere, part, cluster;
   std::uint32_t welds[3];
   TriangleCorners corners;
 };
 
 std::vector<Triangle> triangles_of(const Surface& surface, const Pose& pose) {
   std::vector<Triangle> triangles;
-  for (const Cluster& cluster : surface.clusters) {
+  for (std::uint32_t c = 0; c < surface.clusters.size; ++c) {
+    const Cluster& cluster = surface.clusters[c];
     for (std::size_t i = cluster.first_triangle; i < cluster.first_triangle + cluster.triangle_count; ++i) {
-      Triangle t{surface.triangles[i], cluster.sphere, surface.parts[i], {}, {}};
+      Triangle t{surface.triangles[i], cluster.sphere, surface.parts[i], c, {}, {}};
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t vertex = surface.cluster_vertices[cluster.first_vertex + surface.corners[3 * i + k]];
         const float* const p = pose.vertices + surface.source_vertices[vertex] * (vertex_stride(pose) / sizeof(float));
@@ -52,6 +53,16 @@ bool is_asked(const Case& c, const SkinContactJob& job, std::uint32_t p, std::ui
   return job.scope == SC_SCOPE_ALL || are_neighbours == (job.scope == SC_SCOPE_NEIGHBOURS);
 }
 
+// Is one of two clusters buried, or are they layers of one place?
+bool are_layers(const Surface& surface, std::uint32_t a, std::uint32_t b) {
+  const auto is_buried = [&](std::uint32_t c) { return (surface.buried[c / 64] >> (c % 64) & 1) != 0; };
+  bool out = is_buried(a) || is_buried(b);
+  for (std::uint32_t i = surface.first_of_layers[a]; i < surface.first_of_layers[a + 1]; ++i) {
+    out = out || (surface.layer_words[i] == b / 64 && (surface.layer_bits[i] >> (b % 64) & 1) != 0);
+  }
+  return out;
+}
+
 std::map<Pair, std::pair<Triangle, Triangle>> all_contacts(const Case& c, const SkinContactJob& job,
                                                            const Surface& surface) {
   const std::vector<Triangle> triangles = triangles_of(surface, job.pose);
@@ -60,6 +71,7 @@ std::map<Pair, std::pair<Triangle, Triangle>> all_contacts(const Case& c, const 
     for (const Triangle& b : triangles) {
       const Pair pair{a.number, b.number};
       if (a.number >= b.number || !is_asked(c, job, a.sphere, b.sphere)) continue;
+      if (job.scope == SC_SCOPE_APART && are_layers(surface, a.cluster, b.cluster)) continue;
       const bool are_neighbours = std::any_of(a.welds, a.welds + 3, [&](std::uint32_t weld) {
         return std::find(b.welds, b.welds + 3, weld) != b.welds + 3;
       });
@@ -121,7 +133,7 @@ void draw_question(Case& c, SkinContactJob& job, Filter& filter) {
     job.candidate_count = pairs.size();
     return;
   }
-  job.scope = static_cast<Scope>(c.random.below(3));
+  job.scope = static_cast<Scope>(c.random.below(4));
   if (c.random.one_in(2)) {
     filter = draw_filter(c);
     job.filter = &filter;
@@ -145,7 +157,7 @@ Ways ways_of(Case& c, SkinContactJob& job, Filter& filter, Target& other) {
                  put_askew(c, job.triangles);
                  c.spoil(SC_MISALIGNED, SC_FIELD_TRIANGLES);
                },
-               [&] { job.scope = draw_none<Scope>(c, 3), c.spoil(SC_BAD_VALUE, SC_FIELD_SCOPE); },
+               [&] { job.scope = draw_none<Scope>(c, 4), c.spoil(SC_BAD_VALUE, SC_FIELD_SCOPE); },
                [&] { other = draw_none<Target>(c, 8), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
                [&] {
                  if (job.candidates != nullptr) {

@@ -120,7 +120,7 @@ class Asking {
     DrawnQuery out;
     Query& query = out.query;
     Random& random = c_.random;
-    query.scope = static_cast<Scope>(random.below(3));
+    query.scope = static_cast<Scope>(random.below(4));
     query.detail = random.one_in(2) ? SC_DETAIL_FULL : SC_DETAIL_QUICK;
     query.classes = random.one_in(2) ? static_cast<std::uint32_t>(random.bits()) | 1U << random.below(6) : 0;
     query.limit = random.one_in(3) ? random.below(4) : random.one_in(4) ? ~std::size_t{0} : 0;
@@ -145,7 +145,7 @@ class Asking {
         out.wanted = question == Question::kSteps ? SC_OK : SC_UNSUPPORTED_TARGET;
         break;
       case 1:
-        query.scope = draw_none<Scope>(c_, 3);
+        query.scope = draw_none<Scope>(c_, 4);
         out.wanted = is_of_itself ? SC_BAD_VALUE : SC_OK;
         break;
       case 2:

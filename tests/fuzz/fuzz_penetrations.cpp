@@ -46,7 +46,7 @@ Ways ways_of(Case& c, PenetrationJob& job, Target& other) {
       [&] { job.penetrations = nullptr, job.penetration_capacity = 1, c.spoil(SC_NULL, SC_FIELD_PENETRATIONS); },
       [&] { job.previous = nullptr, job.previous_count = 1, c.spoil(SC_NULL, SC_FIELD_PREVIOUS); },
       [&] { job.rule = &bad_rule(), c.spoil(SC_BAD_VALUE, SC_FIELD_RULE); },
-      [&] { job.scope = draw_none<Scope>(c, 3), c.spoil(SC_BAD_VALUE, SC_FIELD_SCOPE); },
+      [&] { job.scope = draw_none<Scope>(c, 4), c.spoil(SC_BAD_VALUE, SC_FIELD_SCOPE); },
       [&] { other = draw_none<Target>(c, 8), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
       [&] {
         if (job.contact_count > 0) {
@@ -101,7 +101,7 @@ void fuzz_penetrations(Case& c) {
   job.skin_table = table;
   Surface surface;
   c.expect(read_skin_table(c.view(), table, surface) == SC_OK, "a skin table is not read");
-  job.scope = static_cast<Scope>(c.random.below(3));
+  job.scope = static_cast<Scope>(c.random.below(4));
   job.quick = c.random.one_in(3) ? 1 : 0;
   job.contact_count = c.random.below(kMaxContacts);
   draw_contacts(c, job, surface);

@@ -112,7 +112,7 @@ test('a query says what is listed', () => {
   refuses(() => body.contacts({ partPairs: [3, 7] }), /partPairs: two numbers/);
   // Everything is ignored.
   const filter = model.createFilter();
-  for (let a = 0; a < model.regionCount; ++a) for (let b = 0; b <= a; ++b) filter.ignoreRegions(a, b);
+  for (let a = 0; a < model.partCount; ++a) for (let b = 0; b <= a; ++b) filter.ignoreParts(a, b);
   assert.equal(body.contacts({ filter }).parts.length, 0);
   assert.equal(body.spherePairs({ filter }).total, 0);
   const { triangles, triangleTotal } = body.contacts({ detail: 'full' });

@@ -97,7 +97,7 @@ export function frameHashes(body, filter, frames, frame) {
 
 export function filterOf(model) {
   const filter = model.createFilter();
-  filter.ignoreRegions(0, 1);
+  filter.ignoreParts(0, 1);
   filter.ignorePair(0, 1, false);
   return filter;
 }

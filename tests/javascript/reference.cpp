@@ -173,7 +173,7 @@ void print_frame(const Model& model, Body& body, const Palettes& palettes, std::
   filter.ignored = words.data();
   filter.ignored_words = words.size();
   require(sc_reset_filter(&model.asset(), &filter));
-  require(sc_ignore_regions(&model.asset(), &filter, 0, 1, 1));
+  require(sc_ignore_parts(&model.asset(), &filter, 0, 1, 1));
   require(sc_ignore_pair(&model.asset(), &filter, 0, 1, 0));
   Query filtered = options(SC_DETAIL_QUICK, kAll);
   filtered.filter = &filter;

@@ -143,16 +143,21 @@ class Builder {
     const auto bounds_morphs = structs<schema::BallLanes>(fb_, in.bounds_morphs);
     const auto layer_pairs = stream(in.layer_pairs), layer_run_ends = stream(in.layer_run_ends);
     const auto layer_runs = fb_.CreateVector(in.layer_runs);
-    const auto windings = fb_.CreateVector(in.windings), core_windings = fb_.CreateVector(in.core_windings);
-    const auto core_triangles = stream(in.core_triangles);
+    // Skins without triangles have these, too.
+    const auto or_zeros = [](const auto& numbers, std::size_t count) {
+      return numbers.empty() ? std::decay_t<decltype(numbers)>(count, 0) : numbers;
+    };
+    const std::size_t cores = kCorePoints * parts_.parts.size();
+    const auto windings = fb_.CreateVector(or_zeros(in.windings, 3 * parts_.spheres.size()));
+    const auto core_windings = fb_.CreateVector(or_zeros(in.core_windings, 3 * cores));
+    const auto core_triangles = stream(or_zeros(in.core_triangles, cores));
     const auto hulls = structs<schema::Hull>(fb_, in.hulls);
     const auto hull_bones = structs<schema::HullBone>(fb_, in.hull_bones);
-    return schema::CreateSkin(fb_, in.vertex_count, triangles, corners, part_runs, part_run_ends, clusters,
-                              cluster_vertices, cluster_bones, sources, welds, positions, influence_counts,
-                              influence_bones, weights, morph_counts, morphs, boxes, term_counts, term_bones, terms,
-                              bounds_morph_counts, bounds_morph_targets, bounds_morphs, rest_contacts, layer_pairs,
-                              layer_runs, layer_run_ends, windings, core_triangles, core_windings, hulls, hull_bones,
-                              hull_points);
+    return schema::CreateSkin(
+        fb_, in.vertex_count, triangles, corners, part_runs, part_run_ends, clusters, cluster_vertices, cluster_bones,
+        sources, welds, positions, influence_counts, influence_bones, weights, morph_counts, morphs, boxes, term_counts,
+        term_bones, terms, bounds_morph_counts, bounds_morph_targets, bounds_morphs, rest_contacts, layer_pairs,
+        layer_runs, layer_run_ends, windings, core_triangles, core_windings, hulls, hull_bones, hull_points);
   }
 
   const AssetParts& parts_;

@@ -63,6 +63,7 @@ class Packer {
       }
     }
     pack_groups();
+    pack_layers();
     out_.rest_contacts = {0, tiny_.parts.triangle_count - 1, 1, 2};
   }
 

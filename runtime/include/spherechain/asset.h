@@ -39,6 +39,7 @@ typedef struct sc_rest_sphere {
   sc_side side;        /* of a torso sphere: the half that it stands for */
   uint32_t region;     /* below sc_asset_info.region_count */
   int32_t level;       /* of a torso sphere: its height, from the bottom up; else -1 */
+  uint32_t part;       /* that most of its triangles are of */
 } sc_rest_sphere;
 
 /* A vertex buffer of the source's file: a run of the source's vertices. */

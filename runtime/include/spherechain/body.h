@@ -32,7 +32,8 @@ SC_ENUM(sc_detail){
     SC_DETAIL_FULL = 1,
 };
 
-/* The options of a question. Zeros, or a null pointer, give the faults that `play` and `check` report. */
+/* The options of a question. Zeros, or a null pointer, give the faults that `play` and `check` report, but for those
+ * between layers of one place: they ask for SC_SCOPE_LAYERS. */
 typedef struct sc_query {
   sc_scope scope SC_ZERO;
   sc_detail detail SC_ZERO;

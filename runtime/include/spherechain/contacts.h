@@ -9,8 +9,7 @@ SC_ENUM(sc_scope){
     SC_SCOPE_APART = 0,      /* of two spheres that are not ignored: no neighbours on the body. Layers of one place are
                                 left out: a garment on the body, the skin below it */
     SC_SCOPE_NEIGHBOURS = 1, /* of one sphere, or of two that are ignored: folds of elbow and knee; 40 times dearer */
-    SC_SCOPE_ALL = 2,
-    SC_SCOPE_LAYERS = 3, /* as SC_SCOPE_APART, and layers of one place */
+    SC_SCOPE_ALL = 2, SC_SCOPE_LAYERS = 3, /* as SC_SCOPE_APART, and layers of one place */
 };
 
 /* Two body parts whose skins intersect. */

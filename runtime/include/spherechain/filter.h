@@ -21,15 +21,16 @@ SPHERECHAIN_API size_t sc_pair_words(const sc_asset* asset) SC_NOEXCEPT;
 /* Words of a bit for each body part. 0 where the asset is not open. */
 SPHERECHAIN_API size_t sc_part_words(const sc_asset* asset) SC_NOEXCEPT;
 
-/* These edit a filter's buffer. SC_BAD_VALUE: a sphere or region does not exist; nothing is written then. */
+/* These edit a filter's buffer. SC_BAD_VALUE: a sphere or part does not exist; nothing is written then. */
 /* The asset's own pairs. */
 SPHERECHAIN_API sc_status sc_reset_filter(const sc_asset* asset, sc_filter* filter) SC_NOEXCEPT;
 /* `ignored` 0 reports the pair again, also where the asset itself ignores it. */
 SPHERECHAIN_API sc_status sc_ignore_pair(const sc_asset* asset, sc_filter* filter, uint32_t a, uint32_t b,
                                          int ignored) SC_NOEXCEPT;
-/* Each pair of a sphere of one region with a sphere of the other; the same region twice: the pairs within it. */
-SPHERECHAIN_API sc_status sc_ignore_regions(const sc_asset* asset, sc_filter* filter, size_t region, size_t other,
-                                            int ignored) SC_NOEXCEPT;
+/* Each pair of a sphere of one body part with a sphere of the other (sc_rest_sphere.part); the same part twice: the
+ * pairs within it. */
+SPHERECHAIN_API sc_status sc_ignore_parts(const sc_asset* asset, sc_filter* filter, size_t part, size_t other,
+                                          int ignored) SC_NOEXCEPT;
 #if defined(__cplusplus)
 }
 namespace spherechain {

@@ -153,7 +153,7 @@ const Info = struct({
 });
 const Bone = struct({ name: text, inverseBind: field(null, place => columnsOf(words[place / 4])) });
 const Part = struct({ name: text, side, bone: int, parent: int, mobility: int });
-const RestSphere = struct({ center: vec3, radius: float, detectRadius: float, side, region: int, level: int });
+const RestSphere = struct({ center: vec3, radius: float, detectRadius: float, side, region: int, level: int, part: int });
 const Triangle = struct({ part: int, region: int, sphere: int });
 const PartContact = struct({ partA: int, partB: int, trianglePairs: int, low: vec3, high: vec3 });
 const StepContact = struct({
@@ -198,7 +198,7 @@ const history = copied(value => 4 * Penetration.words * checkList(value, 'previo
   for (let i = 0; i < value.length; ++i) Penetration.write(place + 4 * Penetration.words * i, value[i], `previous[${i}]`);
 });
 const Query = struct({
-  scope: choice('apart', 'neighbours', 'all'), detail: choice('quick', 'full'), filter: handle('createFilter()', () => Filter), ignoredParts: parts(),
+  scope: choice('apart', 'neighbours', 'all', 'layers'), detail: choice('quick', 'full'), filter: handle('createFilter()', () => Filter), ignoredParts: parts(),
   ignoredPartsOfOther: parts(), partPairs: copied(value => 4 * value.length, (place, value) => words.set(value, place / 4)),
   rule: limits,
   classes: field(0, null, (place, value = [], name) => {
@@ -336,8 +336,8 @@ class Filter {
   ignorePair(a, b, isIgnored = true) {
     this.#edit(call.sc_ignore_pair, a, b, isIgnored);
   }
-  ignoreRegions(region, other, isIgnored = true) {
-    this.#edit(call.sc_ignore_regions, region, other, isIgnored);
+  ignoreParts(part, other, isIgnored = true) {
+    this.#edit(call.sc_ignore_parts, part, other, isIgnored);
   }
   #edit(edit, a, b, isIgnored) {
     const filter = handleOf(this, 'filter');

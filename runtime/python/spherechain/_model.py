@@ -42,7 +42,7 @@ class Part(NamedTuple):
 class Query(NamedTuple):
     """The options of a question, keywords of Model's methods. The defaults ask what `play` and `check` ask."""
 
-    scope: str = "apart"  #: "all": with neighbours on the body, the folds of elbows and knees; "neighbours": these alone
+    scope: str = "apart"  #: "layers": with garments on the body; "all": with neighbours, too, the folds of elbows and knees; "neighbours": these alone
     detail: str = "quick"  #: "full": penetrations that are no faults in full, too; contacts of spheres and triangles
     classes: Sequence[str] = FAULTS  #: which penetrations are listed, of CLASSES
     limit: int = 0  #: the worst so many; 0: all

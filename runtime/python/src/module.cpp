@@ -75,7 +75,8 @@ PYBIND11_MODULE(_native, module) {
   py::enum_<Scope>(module, "Scope")
       .value("apart", SC_SCOPE_APART)
       .value("neighbours", SC_SCOPE_NEIGHBOURS)
-      .value("all", SC_SCOPE_ALL);
+      .value("all", SC_SCOPE_ALL)
+      .value("layers", SC_SCOPE_LAYERS);
   py::enum_<PenetrationClass> kinds(module, "Class");
   for (int kind = SC_CLASS_REST; kind <= SC_CLASS_INSIDE; ++kind) {
     kinds.value(sc_penetration_class_name(static_cast<PenetrationClass>(kind)), static_cast<PenetrationClass>(kind));

@@ -19,9 +19,11 @@ static_assert(offsetof(Pivot, weight) == 12 && offsetof(sc_source_buffer, hash) 
               offsetof(RestPair, rest_scale) == 8 && offsetof(CenterTerm, w) == 12);
 static_assert(offsetof(RestSphere, pivot_spread) == 20 && offsetof(RestSphere, triangle_count) == 28 &&
               offsetof(RestSphere, pivot_count) == 32 && offsetof(RestSphere, region) == 34 &&
-              offsetof(RestSphere, side) == 35 && offsetof(RestSphere, level) == 36 && offsetof(RestSphere, part) == 38);
-static_assert(offsetof(BoxLanes, radius) == 192 && offsetof(PackedCluster, bone_count) == 2 && offsetof(PackedCluster, is_buried) == 4 &&
-              offsetof(PackedHull, center) == 4 && offsetof(PackedHull, slack) == 20);
+              offsetof(RestSphere, side) == 35 && offsetof(RestSphere, level) == 36 &&
+              offsetof(RestSphere, part) == 38);
+static_assert(offsetof(BoxLanes, radius) == 192 && offsetof(PackedCluster, bone_count) == 2 &&
+              offsetof(PackedCluster, is_buried) == 4 && offsetof(PackedHull, center) == 4 &&
+              offsetof(PackedHull, slack) == 20);
 
 // Empty where the asset lacks the array.
 template <typename View, typename Entry>
@@ -197,7 +199,7 @@ sc_rest_sphere sc_asset_sphere(const sc_asset* asset, size_t index) noexcept {
     return {};
   }
   const RestSphere& s = spheres[index];
-  return {s.center, s.radius, s.detect_radius, static_cast<sc_side>(s.side), s.region, s.level};
+  return {s.center, s.radius, s.detect_radius, static_cast<sc_side>(s.side), s.region, s.level, s.part};
 }
 
 sc_bone sc_asset_bone(const sc_asset* asset, size_t index) noexcept {

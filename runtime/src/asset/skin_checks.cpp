@@ -227,9 +227,7 @@ class SkinChecker {
     return message_.has_size(name, before, sizes_.triangles, "triangles") && ends(ends_of_runs, name);
   }
 
-  bool check_parts() {
-    return check_runs(skin_.part_runs, skin_.part_run_ends, asset_.part_count(), "skin.part_runs");
-  }
+  bool check_parts() { return check_runs(skin_.part_runs, skin_.part_run_ends, asset_.part_count(), "skin.part_runs"); }
 
   std::size_t lanes_of(std::size_t group) const {
     return std::min(kClusterLanes, skin_.clusters.size - kClusterLanes * group);

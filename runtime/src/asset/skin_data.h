@@ -16,9 +16,9 @@ inline constexpr std::size_t kMaxClusterTriangles = 64;
 inline constexpr std::size_t kMaxClusterVertices = 3 * kMaxClusterTriangles;
 inline constexpr std::size_t kHullLanes = 16;  // a hull's points are a multiple of it
 
-inline constexpr std::uint8_t kOneWeightLeftOut = 128;  // bit of an influence count
+inline constexpr std::uint8_t kOneWeightLeftOut = 128;                          // bit of an influence count
 inline constexpr std::uint8_t kIsCovered = 1, kIsInsideOut = 2, kIsDouble = 4;  // bits of a run of layers
-inline constexpr std::size_t kCorePoints = 128;         // a part: see core_point()
+inline constexpr std::size_t kCorePoints = 128;                                 // a part: see core_point()
 
 // Eight balls, or boxes along the axes, one a lane.
 struct BallLanes {

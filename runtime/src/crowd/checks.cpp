@@ -33,11 +33,12 @@ MemoryRange range_of_instances(const AssetView& asset, const CrowdJob& job) {
 }
 
 bool is_aliased(const AssetView& asset, const CrowdJob& job) {
-  return any_shared(
-      {range_of(Span<std::uint32_t>{job.counts, job.count_capacity}),
-       range_of(Span<std::uint64_t>{job.bits, job.bit_words}), range_of(Span<CrowdPair>{job.pairs, job.pair_capacity}),
-       range_of(Span<std::uint64_t>{job.scratch, job.scratch_words})},
-      {range_of_instances(asset, job), range_of(asset.ignored()), range_of(job.filter)});
+  return any_shared({range_of(Span<std::uint32_t>{job.counts, job.count_capacity}),
+                     range_of(Span<std::uint64_t>{job.bits, job.bit_words}),
+                     range_of(Span<std::uint64_t>{job.part_pairs, job.part_pair_words}),
+                     range_of(Span<CrowdPair>{job.pairs, job.pair_capacity}),
+                     range_of(Span<std::uint64_t>{job.scratch, job.scratch_words})},
+                    {range_of_instances(asset, job), range_of(asset.ignored()), range_of(job.filter)});
 }
 
 Status check_instances(const AssetView& asset, const CrowdJob& job) {
@@ -78,7 +79,9 @@ Status check_instances(const AssetView& asset, const CrowdJob& job) {
 Status check_outputs(const AssetView& asset, const CrowdJob& job) {
   for (const Status& status :
        {check_list(job.scratch, 1, SC_FIELD_SCRATCH), check_list(job.counts, job.count_capacity, SC_FIELD_COUNTS),
-        check_list(job.bits, job.bit_words, SC_FIELD_BITS), check_list(job.pairs, job.pair_capacity, SC_FIELD_PAIRS)}) {
+        check_list(job.bits, job.bit_words, SC_FIELD_BITS),
+        check_list(job.part_pairs, job.part_pair_words, SC_FIELD_PART_PAIRS),
+        check_list(job.pairs, job.pair_capacity, SC_FIELD_PAIRS)}) {
     if (status != SC_OK) {
       return status;
     }
@@ -90,10 +93,15 @@ Status check_outputs(const AssetView& asset, const CrowdJob& job) {
   if (job.bit_words > 0 && job.bit_words != job.instance_count * words_for(pairs_of(asset.spheres().size))) {
     return refuse(SC_BAD_VALUE, SC_FIELD_BITS);
   }
+  if (job.part_pair_words > 0 && job.part_pair_words != job.instance_count * part_pair_words(asset)) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_PART_PAIRS);
+  }
   return done();
 }
 
 }  // namespace
+
+std::size_t part_pair_words(const AssetView& asset) { return words_for(asset.part_count() * asset.part_count()); }
 
 std::size_t sphere_stride(const AssetView& asset, const CrowdJob& job) {
   return job.instance_stride == 0 ? asset.spheres().size : job.instance_stride;

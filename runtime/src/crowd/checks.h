@@ -8,6 +8,7 @@
 
 namespace spherechain {
 
+std::size_t part_pair_words(const AssetView& asset);  // of an instance
 // Entries from one instance's spheres to the next's; bytes from one instance's bones.
 std::size_t sphere_stride(const AssetView& asset, const CrowdJob& job);
 std::size_t bone_stride(const AssetView& asset, const CrowdJob& job);

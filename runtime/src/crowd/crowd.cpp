@@ -123,6 +123,23 @@ void list_found(const std::uint32_t* listed, std::size_t count, std::uint32_t in
   }
 }
 
+// Which body parts one instance's pairs are of. `bits` of its spheres, or those that are listed.
+void mark_parts(const Crowd& crowd, const std::uint64_t* bits, const std::uint32_t* listed, std::size_t count,
+                std::uint64_t* out) {
+  const Span<const RestSphere> spheres = crowd.asset.spheres();
+  const std::size_t parts = crowd.asset.part_count();
+  std::fill(out, out + part_pair_words(crowd.asset), std::uint64_t{0});
+  const auto mark = [&](std::uint32_t a, std::uint32_t b) {
+    const std::size_t p = spheres[a].part, q = spheres[b].part, bit = std::min(p, q) * parts + std::max(p, q);
+    out[bit / 64] |= std::uint64_t{1} << bit % 64;
+  };
+  if (count > kMaxListed) {
+    for_each_pair(bits, spheres.size, mark);
+  } else {
+    std::for_each(listed, listed + count, [&](std::uint32_t pair) { mark(pair >> 16, pair & 0xFFFFU); });
+  }
+}
+
 // A task's instances, a register's lanes at a time.
 void run_task(void* data, std::size_t task) {
   const Crowd& crowd = *static_cast<const Crowd*>(data);
@@ -180,7 +197,8 @@ void run_task(void* data, std::size_t task) {
       test_lanes(crowd.target, batch);
     };
     find();
-    if (lists && !keeps_bits && *std::max_element(batch.pair_counts, batch.pair_counts + batch.count) > kMaxListed) {
+    if ((lists || job.part_pair_words > 0) && !keeps_bits &&
+        *std::max_element(batch.pair_counts, batch.pair_counts + batch.count) > kMaxListed) {
       keeps_bits = true;
       find();
     }
@@ -189,6 +207,10 @@ void run_task(void* data, std::size_t task) {
       total += own;
       if (job.counts != nullptr) {
         job.counts[instance] = own;
+      }
+      if (job.part_pair_words > 0 && !crowd.list_only) {
+        mark_parts(crowd, bits + lane * words, batch.listed[lane], own,
+                   job.part_pairs + instance * part_pair_words(crowd.asset));
       }
       if (lists && own > 0) {
         if (own <= kMaxListed) {

@@ -145,10 +145,10 @@ class Tester {
     for (std::size_t s = 0; s < test_.centers.size; ++s) {
       const Sphere& center = test_.centers[s];
       if ((test_.asked[s / 64] >> s % 64 & 1) != 0 && is_finite(center) && is_core(test_.surface, s)) {
-        visit(s, Probe{{center.x, center.y, center.z},
-                       test_.surface.windings.data + 3 * s,
-                       s,
-                       test_.asset.spheres()[s].part});
+        visit(
+            s,
+            Probe{
+                {center.x, center.y, center.z}, test_.surface.windings.data + 3 * s, s, test_.asset.spheres()[s].part});
       }
     }
   }
@@ -236,9 +236,7 @@ class Tester {
 
 }  // namespace
 
-bool is_core(const Surface& surface, std::size_t sphere) {
-  return middle_of(surface.windings.data + 3 * sphere) > 0;
-}
+bool is_core(const Surface& surface, std::size_t sphere) { return middle_of(surface.windings.data + 3 * sphere) > 0; }
 
 void find_inside(const InsideTest& test) { Tester(test).run(); }
 

@@ -58,22 +58,21 @@ sc_status sc_ignore_pair(const sc_asset* asset, sc_filter* filter, uint32_t a, u
   return done();
 }
 
-sc_status sc_ignore_regions(const sc_asset* asset, sc_filter* filter, size_t region, size_t other,
-                            int ignored) noexcept {
+sc_status sc_ignore_parts(const sc_asset* asset, sc_filter* filter, size_t part, size_t other, int ignored) noexcept {
   const Status status = check_edit(asset, filter);
   if (status != SC_OK) {
     return status;
   }
   const AssetView& view = view_of(*asset);
-  if (region >= view.region_count() || other >= view.region_count()) {
+  if (part >= view.part_count() || other >= view.part_count()) {
     return refuse(SC_BAD_VALUE, SC_FIELD_INDEX);
   }
   const Span<const RestSphere> spheres = view.spheres();
   std::size_t bit = 0;
   for (std::size_t b = 1; b < spheres.size; ++b) {
     for (std::size_t a = 0; a < b; ++a, ++bit) {
-      const std::size_t p = spheres[a].region, q = spheres[b].region;
-      if ((p == region && q == other) || (p == other && q == region)) {
+      const std::size_t p = spheres[a].part, q = spheres[b].part;
+      if ((p == part && q == other) || (p == other && q == part)) {
         assign_bit({filter->ignored, filter->ignored_words}, bit, ignored != 0);
       }
     }

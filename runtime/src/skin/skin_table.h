@@ -90,8 +90,8 @@ struct Surface {
   Span<Hull> hulls;          // a sphere's
   Span<float> hull_points;   // of a hull all x, all y, all z
   Span<float> hull_weights;  // of a hull its first bone's of all points, its second's ...
-  // Clusters that are layers of one place, the one over the other, in rows of bits: bit k of layer_bits[i] is of cluster
-  // 64 layer_words[i] + k.
+  // Clusters that are layers of one place, the one over the other, in rows of bits: bit k of layer_bits[i] is of
+  // cluster 64 layer_words[i] + k.
   Span<std::uint32_t> first_of_layers;  // a cluster's in the two below, and the end
   Span<std::uint32_t> layer_words;      // ascending in a row
   Span<std::uint64_t> layer_bits;

@@ -43,7 +43,7 @@ static void call_crowd(const sc_asset* asset, const sc_pose* pose, c_calls_resul
   filter.ignored = words(filter.ignored_words = sc_pair_words(asset));
   OK(sc_reset_filter(asset, &filter));
   OK(sc_ignore_pair(asset, &filter, 2, 5, 1));
-  OK(sc_ignore_regions(asset, &filter, 0, 1, 1));
+  OK(sc_ignore_parts(asset, &filter, 0, 1, 1));
   crowd.asset = asset;
   crowd.pose = *pose;
   crowd.instance_count = 1;

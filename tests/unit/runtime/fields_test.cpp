@@ -284,7 +284,7 @@ TEST_CASE("a search for skin contacts names what it cannot use") {
       {SC_MISALIGNED, SC_FIELD_SPHERES, [](J& j) { j.spheres = askew(j.spheres); }},
       {SC_NULL, SC_FIELD_TRIANGLES, [](J& j) { j.triangles = nullptr; }},
       {SC_MISALIGNED, SC_FIELD_TRIANGLES, [](J& j) { j.triangles = askew(j.triangles); }},
-      {SC_BAD_VALUE, SC_FIELD_SCOPE, [](J& j) { j.scope = static_cast<Scope>(3); }},
+      {SC_BAD_VALUE, SC_FIELD_SCOPE, [](J& j) { j.scope = static_cast<Scope>(4); }},
       {SC_BAD_VALUE, SC_FIELD_SCOPE, [](J& j) { j.scope = static_cast<Scope>(-1); }},
       {SC_NULL, SC_FIELD_CANDIDATES, [](J& j) { j.candidate_count = 1; }},
       {SC_MISALIGNED, SC_FIELD_CANDIDATES, with_candidates([](J& j) { j.candidates = askew(j.candidates); })},

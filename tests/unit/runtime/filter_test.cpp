@@ -66,13 +66,13 @@ TEST_CASE("any edits to a filter report what an asset baked that way would, on e
   }
 }
 
-TEST_CASE("regions are ignored against each other, or each within itself, and taken back") {
+TEST_CASE("body parts are ignored against each other, or each within itself, and taken back") {
   const TinyAsset tiny = random_asset(30, 1);
   const OpenedAsset opened(tiny.parts);
   OwnedFilter owned(opened.asset);
   std::set<Pair> ignored(tiny.ignored_pairs.begin(), tiny.ignored_pairs.end());
   const auto apply = [&](std::size_t p, std::size_t q, bool on) {
-    REQUIRE(sc_ignore_regions(&opened.asset, &owned.filter, p, q, on ? 1 : 0) == SC_OK);
+    REQUIRE(sc_ignore_parts(&opened.asset, &owned.filter, p, q, on ? 1 : 0) == SC_OK);
     for (std::uint32_t b = 0; b < 30; ++b) {
       for (std::uint32_t a = 0; a < b; ++a) {
         const std::size_t in_a = a % 5, in_b = b % 5;  // as random_asset deals them out
@@ -99,13 +99,13 @@ TEST_CASE("an edit of what is not there, or in a buffer that is not there, is re
   CHECK(sc_ignore_pair(asset, filter, 3, 3, 1) == kNoSuchIndex);
   CHECK(sc_ignore_pair(asset, filter, 70, 3, 1) == kNoSuchIndex);
   CHECK(sc_ignore_pair(asset, filter, 3, 70, 1) == kNoSuchIndex);
-  CHECK(sc_ignore_regions(asset, filter, 5, 0, 1) == kNoSuchIndex);
-  CHECK(sc_ignore_regions(asset, filter, 0, 5, 1) == kNoSuchIndex);
+  CHECK(sc_ignore_parts(asset, filter, 5, 0, 1) == kNoSuchIndex);
+  CHECK(sc_ignore_parts(asset, filter, 0, 5, 1) == kNoSuchIndex);
 
   const std::vector<Sphere> spheres(70, {0, 0, 0, 1});
   const auto all_refuse = [&](const Asset* of, Filter* wrong, sc_status status) {
     const sc_status all[] = {sc_reset_filter(of, wrong), sc_ignore_pair(of, wrong, 0, 1, 1),
-                             sc_ignore_regions(of, wrong, 0, 1, 1)};
+                             sc_ignore_parts(of, wrong, 0, 1, 1)};
     CHECK(std::count(std::begin(all), std::end(all), status) == 3);
   };
   all_refuse(nullptr, filter, {SC_NULL, SC_FIELD_ASSET});

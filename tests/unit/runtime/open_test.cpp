@@ -70,7 +70,7 @@ TEST_CASE("the views of an open asset hold what was written") {
 TEST_CASE("each field of a sphere has a place of its own") {
   AssetParts parts = random_asset(1, 3).parts;
   parts.regions.resize(8);
-  parts.spheres[0] = {{1.0F, 2.0F, 3.0F}, 4.0F, 5.0F, 6.0F, 1, 0, 3, 7, SC_SIDE_RIGHT, 9, 0};
+  parts.spheres[0] = {{1.0F, 2.0F, 3.0F}, 4.0F, 5.0F, 6.0F, 1, 0, 3, 7, SC_SIDE_RIGHT, 9, 2, 0};
   const OpenedAsset opened(parts);
   REQUIRE(opened.status == SC_OK);
   const RestSphere& sphere = opened.view().spheres()[0];

@@ -36,19 +36,27 @@ class PlainContacts {
     for (std::uint32_t s = 0; s < tiny.triangles.size(); ++s) {
       for (const std::uint32_t t : tiny.triangles[s]) sphere_of_[t] = s;
     }
-    const Numbers& rest = tiny.parts.skin.rest_contacts;
+    const SkinParts& skin = tiny.parts.skin;
+    const Numbers &rest = skin.rest_contacts, &layers = skin.layer_pairs;
     for (std::size_t i = 0; i < rest.size(); i += 2) at_rest_.insert({rest[i], rest[i + 1]});
+    for (std::size_t i = 0; i < layers.size(); i += 2) layers_.insert({layers[i], layers[i + 1]});
+    for (std::uint32_t c = 0, place = 0; c < skin.clusters.size(); ++c) {
+      for (std::size_t i = 0; i < skin.clusters[c].triangle_count; ++i) cluster_of_[skin.triangles[place++]] = c;
+    }
   }
 
+  // `but_layers`: without clusters that are layers of one place, and buried ones.
   template <typename IsWanted>
-  SkinContacts find(const IsWanted& is_wanted) const {
+  SkinContacts find(const IsWanted& is_wanted, bool but_layers) const {
     SkinContacts out{{SC_OK, SC_FIELD_NONE}, {}, {}, {}};
     std::set<Pair> spheres;
     std::map<Pair, PartContact> parts;
     for (const auto& [a, sphere_a] : sphere_of_) {
       for (const auto& [b, sphere_b] : sphere_of_) {
         const Pair pair{std::min(sphere_a, sphere_b), std::max(sphere_a, sphere_b)};
-        if (a >= b || !is_wanted(pair) || at_rest_.count({a, b}) != 0 || are_neighbours(a, b)) continue;
+        if (a >= b || !is_wanted(pair) || (but_layers && are_layers(a, b)) || at_rest_.count({a, b}) != 0 ||
+            are_neighbours(a, b))
+          continue;
         const TriangleCorners p = corners_of(a), q = corners_of(b);
         if (!triangles_intersect(p, q)) continue;
         const std::uint32_t part_a = tiny_.part_of_triangle[a], part_b = tiny_.part_of_triangle[b];
@@ -74,10 +82,12 @@ class PlainContacts {
   }
 
   SkinContacts find(Scope scope, const std::set<Pair>& ignored) const {
-    return find([&](const Pair& pair) {
-      const bool is_apart = pair.a != pair.b && ignored.count(pair) == 0;
-      return scope == SC_SCOPE_ALL || is_apart == (scope == SC_SCOPE_APART);
-    });
+    return find(
+        [&](const Pair& pair) {
+          const bool is_apart = pair.a != pair.b && ignored.count(pair) == 0;
+          return scope == SC_SCOPE_ALL || is_apart == (scope != SC_SCOPE_NEIGHBOURS);
+        },
+        scope == SC_SCOPE_APART);
   }
   SkinContacts find(Scope scope) const { return find(scope, {tiny_.ignored_pairs.begin(), tiny_.ignored_pairs.end()}); }
 
@@ -88,6 +98,12 @@ class PlainContacts {
   TriangleCorners corners_of(std::uint32_t t) const {
     const auto& c = tiny_.corners[t];
     return {{place(positions_, c[0]), place(positions_, c[1]), place(positions_, c[2])}};
+  }
+  bool are_layers(std::uint32_t a, std::uint32_t b) const {
+    const std::uint32_t p = cluster_of_.at(a), q = cluster_of_.at(b);
+    const std::vector<PackedCluster>& clusters = tiny_.parts.skin.clusters;
+    return clusters[p].is_buried != 0 || clusters[q].is_buried != 0 ||
+           layers_.count({std::min(p, q), std::max(p, q)}) != 0;
   }
   // Do they share a position at rest?
   bool are_neighbours(std::uint32_t a, std::uint32_t b) const {
@@ -103,10 +119,11 @@ class PlainContacts {
   const TinyAsset& tiny_;
   const std::vector<float>& positions_;
   std::map<std::uint32_t, std::uint32_t> sphere_of_;
-  std::set<Pair> at_rest_;
+  std::map<std::uint32_t, std::uint32_t> cluster_of_;
+  std::set<Pair> at_rest_, layers_;
 };
 
-constexpr Scope kScopes[] = {SC_SCOPE_APART, SC_SCOPE_NEIGHBOURS, SC_SCOPE_ALL};
+constexpr Scope kScopes[] = {SC_SCOPE_APART, SC_SCOPE_NEIGHBOURS, SC_SCOPE_ALL, SC_SCOPE_LAYERS};
 
 SkinContactJob job_of(const OpenedAsset& opened, Scope scope = SC_SCOPE_APART) {
   REQUIRE_MESSAGE(opened.status == SC_OK, opened.message);
@@ -302,9 +319,10 @@ TEST_CASE("with candidates a job finds contacts of those pairs of spheres alone,
     give_vertices(job.pose, vertices);
     job.candidates = candidates.data();
     job.candidate_count = candidates.size();
-    const SkinContacts expected = PlainContacts(p.tiny, vertices).find([&](const Pair& pair) {
-      return std::binary_search(candidates.begin(), candidates.end(), pair);
-    });
+    const SkinContacts expected =
+        PlainContacts(p.tiny, vertices)
+            .find([&](const Pair& pair) { return std::binary_search(candidates.begin(), candidates.end(), pair); },
+                  true);
     CHECK((share < 1000) == !expected.triangles.empty());
     check_job(job, expected);
   }
