@@ -14,7 +14,7 @@ namespace spherechain {
 namespace {
 
 // The triangles, of whatever spheres, that intersect in the rest pose and share no corner there; sorted.
-std::vector<Pair> find_rest_contacts(const Model& model, const std::vector<float>& rest) {
+baker::Layers::Pairs find_rest_contacts(const Model& model, const std::vector<float>& rest) {
   std::vector<std::uint64_t> nothing_ignored(sc_pair_words(&model.asset()), 0);
   Filter filter;
   filter.ignored = nothing_ignored.data();
@@ -39,9 +39,9 @@ std::vector<Pair> find_rest_contacts(const Model& model, const std::vector<float
       def.max_triangles = found.triangle_total;
       continue;
     }
-    std::vector<Pair> pairs;
+    baker::Layers::Pairs pairs;
     for (std::size_t i = 0; i < found.triangle_count; ++i) {
-      pairs.push_back({found.triangles[i].triangle_a, found.triangles[i].triangle_b});
+      pairs.emplace_back(found.triangles[i].triangle_a, found.triangles[i].triangle_b);
     }
     return pairs;
   }
@@ -65,8 +65,11 @@ baker::Layers baker::find_layers(const std::vector<std::uint8_t>& draft, const s
   for (std::size_t t = 0; t < covered.size(); ++t) {
     if (covered[t] != 0) out.of_triangle[t] |= kIsCovered;
   }
-  std::vector<Pair> crossing = out.rest_contacts;
-  for (Pair& pair : crossing) pair = {surface.place_of_source[pair.a], surface.place_of_source[pair.b]};
+  Layers::Pairs crossing = out.rest_contacts;
+  for (auto& [a, b] : crossing) {
+    a = surface.place_of_source[a];
+    b = surface.place_of_source[b];
+  }
   Stack stack = find_stack(asset, surface, crossing);
   out.is_buried = std::move(stack.is_buried);
   out.pairs = std::move(stack.pairs);

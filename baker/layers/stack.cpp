@@ -40,13 +40,13 @@ class Stacker {
     }
   }
 
-  baker::Stack run(const std::vector<Pair>& rest_contacts) {
+  baker::Stack run(const baker::Layers::Pairs& rest_contacts) {
     baker::Stack out;
     for (std::uint32_t c = 0; c < surface_.clusters.size; ++c) out.is_buried.push_back(look_from(c) ? 1 : 0);
-    for (const Pair& pair : rest_contacts) add_over(cluster_of(pair.a), cluster_of(pair.b));
+    for (const auto& [a, b] : rest_contacts) add_over(cluster_of(surface_, a), cluster_of(surface_, b));
     for (std::uint32_t a = 0; a < surface_.clusters.size; ++a) {
       for (std::uint32_t b = a + 1; b < surface_.clusters.size; ++b) {
-        if (are_layers(a, b)) out.pairs.push_back({a, b});
+        if (are_layers(a, b)) out.pairs.emplace_back(a, b);
       }
     }
     return out;
@@ -62,11 +62,6 @@ class Stacker {
 
   std::uint32_t piece_of(std::uint32_t cluster) const {
     return surface_.pieces[surface_.cluster_vertices[surface_.clusters[cluster].first_vertex]];
-  }
-  std::uint32_t cluster_of(std::uint32_t triangle) const {
-    const auto after = std::upper_bound(surface_.clusters.begin(), surface_.clusters.end(), triangle,
-                                        [](std::uint32_t t, const Cluster& c) { return t < c.first_triangle; });
-    return static_cast<std::uint32_t>(after - surface_.clusters.begin() - 1);
   }
   Double3 position(std::uint32_t vertex) const {
     const float* const at = surface_.rest_positions.data + 3 * std::size_t{vertex};
@@ -214,7 +209,7 @@ class Stacker {
 
 }  // namespace
 
-baker::Stack baker::find_stack(const AssetView& asset, const Surface& surface, const std::vector<Pair>& rest_contacts) {
+baker::Stack baker::find_stack(const AssetView& asset, const Surface& surface, const Layers::Pairs& rest_contacts) {
   return Stacker(asset, surface).run(rest_contacts);
 }
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "baker/layers/layers.h"
 #include "runtime/src/skin/skin_table.h"
 
 namespace spherechain::baker {
@@ -10,10 +11,10 @@ namespace spherechain::baker {
 // Clusters and what lies over them.
 struct Stack {
   std::vector<char> is_buried;
-  std::vector<Pair> pairs;
+  Layers::Pairs pairs;
 };
 
 // `surface` knows what is covered, and its facings; `rest_contacts` are places of triangles in it.
-Stack find_stack(const AssetView& asset, const Surface& surface, const std::vector<Pair>& rest_contacts);
+Stack find_stack(const AssetView& asset, const Surface& surface, const Layers::Pairs& rest_contacts);
 
 }  // namespace spherechain::baker

@@ -192,11 +192,11 @@ Runs runs_of(const Character& character, const Clusters& in, const BodyParts& pa
   return out;
 }
 
-StreamWriter stream_of(const std::vector<Pair>& pairs) {
+StreamWriter stream_of(const Layers::Pairs& pairs) {
   StreamWriter out;
-  for (const Pair& pair : pairs) {
-    out.put(pair.a);
-    out.put(pair.b);
+  for (const auto& [a, b] : pairs) {
+    out.put(a);
+    out.put(b);
   }
   return out;
 }

@@ -9,7 +9,6 @@
 #include "baker/clusters/clusters.h"
 #include "baker/layers/layers.h"
 #include "sphere_chains_generated.h"
-#include "spherechain/types.h"
 
 namespace spherechain::baker {
 

@@ -63,7 +63,7 @@ export interface Model {
   /** The spheres at rest, with the radii of the two `Radius`. A torso sphere has a side and a level, from the bottom up; others null and -1. */
   readonly spheres: readonly {
     readonly center: Float32Array; readonly radius: number; readonly detectRadius: number; readonly side: Side; readonly region: number;
-    readonly level: number;
+    readonly level: number; readonly part: number;
   }[];
   /** Names: what chains run along: "left arm", "torso". */
   readonly regions: readonly string[];

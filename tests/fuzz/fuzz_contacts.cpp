@@ -5,7 +5,7 @@
 
 #include "fuzz_case.h"
 #include "runtime/src/pose/pose.h"
-#include "runtime/src/skin/skin_table.h"
+#include "runtime/src/skin/left_out.h"
 #include "runtime/src/triangles/exact_triangles.h"
 
 namespace spherechain::test {
@@ -53,16 +53,6 @@ bool is_asked(const Case& c, const SkinContactJob& job, std::uint32_t p, std::ui
   return job.scope == SC_SCOPE_ALL || are_neighbours == (job.scope == SC_SCOPE_NEIGHBOURS);
 }
 
-// Is one of two clusters buried, or are they layers of one place?
-bool are_layers(const Surface& surface, std::uint32_t a, std::uint32_t b) {
-  const auto is_buried = [&](std::uint32_t c) { return (surface.buried[c / 64] >> (c % 64) & 1) != 0; };
-  bool out = is_buried(a) || is_buried(b);
-  for (std::uint32_t i = surface.first_of_layers[a]; i < surface.first_of_layers[a + 1]; ++i) {
-    out = out || (surface.layer_words[i] == b / 64 && (surface.layer_bits[i] >> (b % 64) & 1) != 0);
-  }
-  return out;
-}
-
 std::map<Pair, std::pair<Triangle, Triangle>> all_contacts(const Case& c, const SkinContactJob& job,
                                                            const Surface& surface) {
   const std::vector<Triangle> triangles = triangles_of(surface, job.pose);
@@ -71,7 +61,8 @@ std::map<Pair, std::pair<Triangle, Triangle>> all_contacts(const Case& c, const 
     for (const Triangle& b : triangles) {
       const Pair pair{a.number, b.number};
       if (a.number >= b.number || !is_asked(c, job, a.sphere, b.sphere)) continue;
-      if (job.scope == SC_SCOPE_APART && are_layers(surface, a.cluster, b.cluster)) continue;
+      const bool is_hidden = is_buried(surface, a.cluster) || is_buried(surface, b.cluster);
+      if (job.scope == SC_SCOPE_APART && (is_hidden || are_layers(surface, a.cluster, b.cluster))) continue;
       const bool are_neighbours = std::any_of(a.welds, a.welds + 3, [&](std::uint32_t weld) {
         return std::find(b.welds, b.welds + 3, weld) != b.welds + 3;
       });

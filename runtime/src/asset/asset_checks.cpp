@@ -134,7 +134,6 @@ class AssetChecker {
         {sphere.pivot_count > 0, ".pivot_count", "0, but a sphere needs a pivot"},
         {sphere.side <= SC_SIDE_RIGHT, ".side", "no known side"},
         {sphere.level >= -1, ".level", "below -1"},
-        {sphere.part < asset_.part_count(), ".part", "past the body parts"},
         {sphere.reserved == 0, ".reserved", "not 0"},
     };
     for (const auto& rule : rules) {
@@ -278,6 +277,11 @@ class AssetChecker {
   bool check_parts() {
     if (!is_in_range(asset_.part_count(), kMaxPartCount, "parts")) {
       return false;
+    }
+    for (std::size_t i = 0; i < asset_.spheres().size; ++i) {
+      if (asset_.spheres()[i].part >= asset_.part_count()) {
+        return message_.wrong_at("spheres", i, ".part", "past the body parts");
+      }
     }
     const std::size_t bones = asset_.bone_count();
     for (std::size_t i = 0; i < asset_.part_count(); ++i) {

@@ -17,6 +17,9 @@
 
 namespace spherechain {
 
+constexpr bool is_known(Scope scope) { return scope >= SC_SCOPE_APART && scope <= SC_SCOPE_LAYERS; }
+constexpr bool has_neighbours(Scope scope) { return scope == SC_SCOPE_NEIGHBOURS || scope == SC_SCOPE_ALL; }
+
 // The part that both contact jobs have: how they are asked, and their lists.
 struct ContactJob {
   Target target{};

@@ -62,7 +62,7 @@ Status check(const SkinContactJob& job, Target& resolved, Surface& surface) {
   if (job.scratch_words < skin_scratch_words(asset)) {
     return refuse(SC_TOO_SMALL, SC_FIELD_SCRATCH);
   }
-  if (job.scope < SC_SCOPE_APART || job.scope > SC_SCOPE_LAYERS) {
+  if (!is_known(job.scope)) {
     return refuse(SC_BAD_VALUE, SC_FIELD_SCOPE);
   }
   if (!resolve_target(job.target, resolved)) {
@@ -98,7 +98,7 @@ Status SkinContactJob::run() noexcept {
   WordMemory memory(scratch);
   PosedClusters posed = posed_clusters_of(view, surface, pose, filter, memory);
   posed.apart = scope != SC_SCOPE_NEIGHBOURS;
-  posed.neighbours = scope == SC_SCOPE_NEIGHBOURS || scope == SC_SCOPE_ALL || candidates != nullptr;
+  posed.neighbours = has_neighbours(scope) || candidates != nullptr;
   posed.layers = scope != SC_SCOPE_APART;
   posed.candidates = {candidates, candidate_count};
   posed.first_only = spheres_only != 0;

@@ -35,6 +35,9 @@ bool PairRule::counts(std::uint32_t a, std::uint32_t b) const {
   if (!(is_neighbour ? neighbours : apart)) {
     return false;
   }
+  if (!layers && are_layers(*surface, cluster_of(*surface, a), cluster_of(*surface, b))) {
+    return false;
+  }
   const std::uint32_t p = surface->triangles[a], q = surface->triangles[b];
   return !std::binary_search(surface->rest_contacts.begin(), surface->rest_contacts.end(),
                              Pair{std::min(p, q), std::max(p, q)});

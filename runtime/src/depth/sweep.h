@@ -8,6 +8,7 @@
 
 #include "runtime/src/depth/contour.h"
 #include "runtime/src/depth/shadow.h"
+#include "runtime/src/skin/left_out.h"
 
 namespace spherechain {
 
@@ -15,9 +16,10 @@ namespace spherechain {
 struct PairRule {
   const Surface* surface = nullptr;  // null: all pairs, those of two bodies
   Span<const std::uint64_t> ignored;
-  bool apart = true, neighbours = false;
+  bool apart = true, neighbours = false, layers = true;
 
   bool counts(std::uint32_t a, std::uint32_t b) const;
+  bool leaves_out(std::uint32_t cluster) const { return surface != nullptr && !layers && is_buried(*surface, cluster); }
 };
 
 // The end of the way: the pair of triangles that blocks it last.

@@ -155,7 +155,8 @@ void Sweep::keep_runs(const Side& side, const Side& other, const Reach& reach, B
       return is_near([&](std::size_t axis) { return double{other.skin.high[axis][from.cluster]}; },
                      [&](std::size_t axis) { return double{other.skin.low[axis][from.cluster]}; });
     };
-    if (is_near([&](std::size_t axis) { return highest[axis]; }, [&](std::size_t axis) { return lowest[axis]; }) &&
+    if (!rule_.leaves_out(run.cluster) &&
+        is_near([&](std::size_t axis) { return highest[axis]; }, [&](std::size_t axis) { return lowest[axis]; }) &&
         std::any_of(other.runs.begin(), other.runs.end(), is_near_run)) {
       widen_blocks(side.skin, run, out);
       for (std::uint32_t i = 0; i < run.count; ++i) {

@@ -208,9 +208,7 @@ class Measurer {
     const auto end =
         std::unique(runs.begin(), runs.end(), [&](const auto& l, const auto& r) { return first(l) == first(r); });
     for (TriangleRun* run = runs.begin(); run != end; ++run) {
-      const auto after = std::upper_bound(surface_a_.clusters.begin(), surface_a_.clusters.end(), run->first,
-                                          [](std::uint32_t t, const Cluster& c) { return t < c.first_triangle; });
-      run->cluster = static_cast<std::uint32_t>(after - surface_a_.clusters.begin() - 1);
+      run->cluster = cluster_of(surface_a_, run->first);
     }
     return {runs.data, static_cast<std::size_t>(end - runs.begin())};
   }

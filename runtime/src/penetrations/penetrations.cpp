@@ -86,7 +86,7 @@ Status measure(PenetrationJob& job) {
   if (rest != SC_OK) {
     return rest;
   }
-  if (job.scope != SC_SCOPE_APART && job.scope != SC_SCOPE_NEIGHBOURS && job.scope != SC_SCOPE_ALL) {
+  if (!is_known(job.scope)) {
     return refuse(SC_BAD_VALUE, SC_FIELD_SCOPE);
   }
   if (is_aliased(job, asset)) {
@@ -95,7 +95,8 @@ Status measure(PenetrationJob& job) {
   const Meeting::Side side{&asset, &surface, job.pose};
   Meeting meeting = meeting_of(job, side, side, resolved);
   meeting.are_one = true;
-  meeting.rule = {&surface, asset.ignored(), job.scope != SC_SCOPE_NEIGHBOURS, job.scope != SC_SCOPE_APART};
+  meeting.rule = {&surface, asset.ignored(), job.scope != SC_SCOPE_NEIGHBOURS, has_neighbours(job.scope),
+                  job.scope != SC_SCOPE_APART};
   if (job.filter != nullptr) {
     meeting.rule.ignored = {job.filter->ignored, job.filter->ignored_words};
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Triangle pairs that never count as contacts: neighbours on the skin, pairs that intersect at rest, and parts that the
-// caller ignores.
+// caller ignores; and those that count only where layers of one place are asked for.
 #pragma once
 
 #include <algorithm>
@@ -39,6 +39,20 @@ inline bool share_a_position(const Surface& surface, const PlacedTriangle& a, co
       if (own == weld(b, j)) {
         return true;
       }
+    }
+  }
+  return false;
+}
+
+inline bool is_buried(const Surface& surface, std::size_t cluster) {
+  return (surface.buried[cluster / 64] >> cluster % 64 & 1) != 0;
+}
+
+// True if the one cluster lies over the other.
+inline bool are_layers(const Surface& surface, std::size_t cluster, std::size_t other) {
+  for (std::uint32_t i = surface.first_of_layers[cluster]; i < surface.first_of_layers[cluster + 1]; ++i) {
+    if (surface.layer_words[i] == other / 64) {
+      return (surface.layer_bits[i] >> other % 64 & 1) != 0;
     }
   }
   return false;

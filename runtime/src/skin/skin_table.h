@@ -2,6 +2,7 @@
 // The asset's skin, expanded so that kernels read it side by side: what prepare_skin() makes of the packed one.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -111,6 +112,12 @@ struct Surface {
   Span<const std::int8_t> windings;       // around each sphere's centre
   Span<const std::int8_t> core_windings;  // around each core point
 };
+
+inline std::uint32_t cluster_of(const Surface& surface, std::uint32_t triangle) {
+  const auto after = std::upper_bound(surface.clusters.begin(), surface.clusters.end(), triangle,
+                                      [](std::uint32_t t, const Cluster& c) { return t < c.first_triangle; });
+  return static_cast<std::uint32_t>(after - surface.clusters.begin() - 1);
+}
 
 inline Span<const TriangleRun> runs_of(const Surface& surface, std::size_t part) {
   const std::uint32_t first = surface.first_of_part[part];

@@ -159,6 +159,7 @@ TEST_CASE("a figure that makes no sense is refused") {
       {"spheres[3].side: no known side", [](AssetParts& p) { p.spheres[3].side = 3; }},
       {"spheres[3].level: below -1", [](AssetParts& p) { p.spheres[3].level = -2; }},
       {"spheres[3].reserved: not 0", [](AssetParts& p) { p.spheres[3].reserved = 1; }},
+      {"spheres[3].part: past the body parts", [](AssetParts& p) { p.spheres[3].part = 5; }},
       {"rest_pairs_fit[0]: a is not below b", [](AssetParts& p) { p.rest_fit[0].a = p.rest_fit[0].b; }},
       {"rest_pairs_fit[1]: scale is not in [0, 1)", [](AssetParts& p) { p.rest_fit[1].rest_scale = 1; }},
       {"rest_pairs_fit[1]: scale is not in [0, 1)", [](AssetParts& p) { p.rest_fit[1].rest_scale = -0.25F; }},

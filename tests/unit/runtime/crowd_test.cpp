@@ -8,6 +8,7 @@
 #include "jobs.h"
 #include "owned_filter.h"
 #include "palette.h"
+#include "runtime/src/base/pair_bits.h"
 
 namespace spherechain::test {
 namespace {
@@ -16,7 +17,7 @@ constexpr Sphere kGap{0, 0, 0, kInfinity};  // between instances: never to be lo
 
 struct Expected {
   std::vector<std::uint32_t> counts;
-  std::vector<std::uint64_t> bits;
+  std::vector<std::uint64_t> bits, part_pairs;
   std::vector<CrowdPair> pairs;
 };
 
@@ -43,7 +44,13 @@ struct Crowd {
       const Detected found = detect(asset, one, radius, SC_TARGET_SCALAR, filter);
       result.counts.push_back(static_cast<std::uint32_t>(found.pairs.size()));
       result.bits.insert(result.bits.end(), found.bits.begin(), found.bits.end());
-      for (const Pair& pair : found.pairs) result.pairs.push_back({static_cast<std::uint32_t>(i), pair});
+      const std::size_t parts = view_of(asset).part_count(), first = result.part_pairs.size();
+      result.part_pairs.resize(first + words_for(parts * parts));
+      for (const Pair& pair : found.pairs) {
+        result.pairs.push_back({static_cast<std::uint32_t>(i), pair});
+        const auto [p, q] = std::minmax(view_of(asset).spheres()[pair.a].part, view_of(asset).spheres()[pair.b].part);
+        result.part_pairs[first + (p * parts + q) / 64] |= std::uint64_t{1} << (p * parts + q) % 64;
+      }
     }
     return result;
   }
@@ -93,13 +100,16 @@ TEST_CASE("a crowd's pairs are each instance's own, on every target, in any numb
             CHECK(same_bits(pairs, wanted.pairs));
           }
 
-          std::vector<std::uint64_t> bits(wanted.bits.size(), 5);
+          std::vector<std::uint64_t> bits(wanted.bits.size(), 5), part_pairs(wanted.part_pairs.size(), 5);
+          run.job.part_pairs = part_pairs.data();
+          run.job.part_pair_words = part_pairs.size();
           std::fill(pairs.begin(), pairs.end(), CrowdPair{});
           run.job.bits = bits.data();
           run.job.bit_words = bits.size();
           run.job.pair_capacity = pairs.size();
           REQUIRE(run.job.run() == SC_OK);
           CHECK(bits == wanted.bits);
+          CHECK(part_pairs == wanted.part_pairs);
           CHECK(same_bits(pairs, wanted.pairs));
 
           run.job.pairs = nullptr;
@@ -107,10 +117,12 @@ TEST_CASE("a crowd's pairs are each instance's own, on every target, in any numb
           for (const bool with_bits : {true, false}) {
             run.counts.assign(instances, 7);
             bits.assign(bits.size(), 5);
+            part_pairs.assign(part_pairs.size(), 5);
             run.job.bit_words = with_bits ? bits.size() : 0;
             REQUIRE(run.job.run() == SC_OK);
             CHECK(run.counts == wanted.counts);
             CHECK((!with_bits || bits == wanted.bits));
+            CHECK(part_pairs == wanted.part_pairs);
           }
 
           run.job.bits = nullptr;

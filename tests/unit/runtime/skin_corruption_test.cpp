@@ -117,11 +117,12 @@ TEST_CASE("clusters, triangles and parts that are not sound are refused") {
           {"skin.triangles[3]: missing, or past", [](S& s) { s.triangles[3] = 48; }},
           {"skin.triangles[47]: missing, or past", [](S& s) { s.triangles.pop_back(); }},
           {"skin.triangles: more of them", [](S& s) { s.triangles.push_back(0); }},
-          {"skin.part_runs[0]: past the parts", [](S& s) { s.part_runs[0] = 5; }},
-          {"skin.part_runs[1]: past the parts", [](S& s) { s.part_run_ends[1] = s.part_run_ends[0]; }},
+          {"skin.part_runs[0]: no such value", [](S& s) { s.part_runs[0] = 5; }},
+          {"skin.part_runs[1]: no such value", [](S& s) { s.part_run_ends[1] = s.part_run_ends[0]; }},
           {"skin.part_runs: 49 of them, but 48", [](S& s) { s.part_run_ends.back() = 49; }},
           {"skin.part_runs: ", [](S& s) { s.part_runs.pop_back(), s.part_run_ends.pop_back(); }},
-          {"skin.part_run_ends: more of them", [](S& s) { s.part_run_ends.push_back(48); }},
+          {"skin.part_runs: more of them", [](S& s) { s.part_run_ends.push_back(48); }},
+          {"skin.clusters[2]: its vertex_count", [](S& s) { s.clusters[2].is_buried = 2; }},
       });
 }
 
@@ -168,6 +169,13 @@ TEST_CASE("bounds, hulls and rest contacts that are not sound are refused") {
           {"skin.rest_contacts[1]: a is not below b, or not sorted",
            [](S& s) { std::copy_n(s.rest_contacts.begin(), 2, s.rest_contacts.begin() + 2); }},
           {"skin.rest_contacts[1]: missing", [](S& s) { s.rest_contacts.pop_back(); }},
+          {"skin.layer_pairs[0]: missing, or past", [](S& s) { s.layer_pairs[1] = 24; }},
+          {"skin.layer_pairs[0]: a is not below b", [](S& s) { s.layer_pairs[1] = s.layer_pairs[0]; }},
+          {"skin.layer_runs[0]: no such value", [](S& s) { s.layer_runs[0] = 8; }},
+          {"skin.layer_runs: 47 of them, but 48", [](S& s) { s.layer_run_ends[0] = 47; }},
+          {"skin.windings: 35 of them, but 36", [](S& s) { s.windings.pop_back(); }},
+          {"skin.core_triangles[3]: missing, or past", [](S& s) { s.core_triangles[3] = 49; }},
+          {"skin.core_windings: 1919 of them, but 1920", [](S& s) { s.core_windings.pop_back(); }},
       });
 }
 
