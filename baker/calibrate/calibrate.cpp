@@ -17,6 +17,7 @@ constexpr double kCloseReach = 1.03;  // and are reported up to this part of the
 constexpr double kGapShare = 0.6;     // of another gap must close
 constexpr double kNear = 0.9;         // spheres nearly touch where this part of their distance is within their radii
 constexpr double kListed = 0.01;      // of the poses: what a pair's own distance saves in false alarms, at least
+constexpr double kAlways = 0.8;       // of the poses: what touches in so many is no alarm
 constexpr std::size_t kElements = 30'000'000;  // triangles, or nodes and bones, of all poses together, at most
 
 std::vector<Pair> tested_pairs(const Binding& binding) {
@@ -44,6 +45,16 @@ std::vector<SampledPair> sampled_pairs(const Character& character, const std::ve
   return out;
 }
 
+// Contacts that there are in most poses alarm nobody.
+void forget_what_always_touches(std::vector<SampledPair>& pairs, int poses) {
+  for (SampledPair& pair : pairs) {
+    const auto touches = std::ranges::count_if(pair.samples, &PairSample::touch);
+    if (static_cast<double>(touches) < kAlways * poses) continue;
+    for (PairSample& sample : pair.samples) sample.touch = false;
+    pair.always_touches = true;
+  }
+}
+
 double rest_distance(const Binding& binding, const Pair& pair) {
   return (binding.spheres[pair.a].rest.center - binding.spheres[pair.b].rest.center).norm();
 }
@@ -60,7 +71,8 @@ std::vector<double> radii_of(const Binding& binding, bool detect) {
 void calibrate(const Character& character, const Regions& regions, const std::vector<Joint>& joints,
                const std::vector<std::uint8_t>& draft, Binding& binding) {
   const std::vector<Pair> pairs = tested_pairs(binding);
-  const std::vector<SampledPair> sampled = sampled_pairs(character, joints, draft, pairs);
+  std::vector<SampledPair> sampled = sampled_pairs(character, joints, draft, pairs);
+  forget_what_always_touches(sampled, pose_count(character));
   const std::vector<double> sampled_radii = radii_of(binding, true);
   const auto sum_of = [&](const Pair& pair, const std::vector<double>& radii) { return radii[pair.a] + radii[pair.b]; };
 
@@ -69,7 +81,7 @@ void calibrate(const Character& character, const Regions& regions, const std::ve
   for (const Pair& pair : pairs) {
     const double distance = rest_distance(binding, pair), sum = sum_of(pair, sampled_radii);
     at_rest.emplace_back();
-    if (kNear * distance >= sum) continue;
+    if (kNear * distance >= sum || sampled[at_rest.size() - 1].always_touches) continue;
     const double gap = skin_gaps.between(pair.a, pair.b);
     at_rest.back() = (gap < kClose * regions.frame.height ? kCloseReach * distance : distance - kGapShare * gap) / sum;
   }

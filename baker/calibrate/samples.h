@@ -23,6 +23,7 @@ inline constexpr double kSampledReach = 2;
 struct SampledPair {
   Pair spheres;
   std::vector<PairSample> samples;
+  bool always_touches = false;  // in most poses: its samples say that it touches in none
 };
 
 // An asset in `count` random poses: what the runtime says about these pairs, bones to spheres and to exact contacts.

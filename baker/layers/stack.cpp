@@ -18,7 +18,8 @@ constexpr double kTight = 0.03;      // nor is one that buries
 constexpr double kMoveAlike = 0.5;   // weight of bones that move both, where one buries the other
 constexpr double kMoveAsOne = 0.95;  // and where it does so at any distance
 constexpr double kNear = 0.035;      // between the vertices of two clusters that are layers of one place
-constexpr double kMiddles = 0.07;    // between their middles, and to where the one lies over the other
+constexpr double kMiddles = 0.07;    // between their middles, or half of their sizes more than kNear
+constexpr double kLarge = 0.06;      // a cluster that is larger than that counts as this large
 constexpr double kStep = 1e-5;       // off a triangle, before a look
 constexpr std::uint32_t kEvery = 8;  // triangles of a cluster, of which one is looked from
 
@@ -173,10 +174,16 @@ class Stacker {
     if (piece_of(a) > piece_of(b)) std::swap(a, b);
     if (piece_of(a) == piece_of(b) || !are_near(a, b)) return false;
     const auto found = over_.find({piece_of(a), piece_of(b)});
-    const double most = kMiddles * height_;
+    const double most = reach(a, b);
     return found != over_.end() && std::any_of(found->second.begin(), found->second.end(), [&](const Over& over) {
              return length(over.a - boxes_[a].middle) < most && length(over.b - boxes_[b].middle) < most;
            });
+  }
+
+  // The middles of layers of one place are not farther apart.
+  double reach(std::uint32_t a, std::uint32_t b) const {
+    const auto size = [&](std::uint32_t c) { return std::min(length(boxes_[c].half), kLarge * height_); };
+    return std::max(kMiddles * height_, kNear * height_ + 0.5 * (size(a) + size(b)));
   }
 
   bool are_near(std::uint32_t a, std::uint32_t b) const {
@@ -184,7 +191,7 @@ class Stacker {
     const Double3 apart = other.middle - box.middle, sum = box.half + other.half;
     const double most = kNear * height_;
     if (std::abs(apart.x) > sum.x + most || std::abs(apart.y) > sum.y + most || std::abs(apart.z) > sum.z + most ||
-        length(apart) >= kMiddles * height_) {
+        length(apart) >= reach(a, b)) {
       return false;
     }
     const auto vertices = [&](std::uint32_t c) {

@@ -191,7 +191,8 @@ std::vector<float> TwoShapes::posed(const Place& place, const Place& both) const
   return vertices;
 }
 
-std::vector<spherechain::Penetration> TwoShapes::ask(const Place& place, const Place& both) const {
+std::vector<spherechain::Penetration> TwoShapes::ask(const Place& place, const Place& both,
+                                                     spherechain::Scope scope) const {
   const std::vector<float> vertices = posed(place, both);
   spherechain::Body body(asset_.model());
   spherechain::Pose pose;
@@ -201,7 +202,7 @@ std::vector<spherechain::Penetration> TwoShapes::ask(const Place& place, const P
   std::vector<spherechain::Penetration> out;
   for (const spherechain::Target target : spherechain::supported_targets()) {
     spherechain::Query query;
-    query.scope = SC_SCOPE_ALL;
+    query.scope = scope;
     query.detail = SC_DETAIL_FULL;
     query.classes = ~0U;
     query.target = target;

@@ -35,7 +35,8 @@ class TwoShapes {
                                                 const Place& both = {}) const;
 
   // The same as a body finds it, with the parts that are inside another: alike on every target.
-  std::vector<spherechain::Penetration> ask(const Place& place, const Place& both = {}) const;
+  std::vector<spherechain::Penetration> ask(const Place& place, const Place& both = {},
+                                            spherechain::Scope scope = SC_SCOPE_ALL) const;
   // Counts the parts of class inside between two bodies in the same pose. `ignored`: a bit for each part that is left
   // out.
   std::size_t count_inside(const Place& place, std::uint64_t ignored, std::uint64_t ignored_of_other) const;
