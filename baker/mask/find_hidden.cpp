@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <mutex>
 
-#include "baker/mask/cover.h"
-#include "baker/mask/views.h"
+#include "baker/layers/cover.h"
+#include "baker/layers/rest_view.h"
+#include "baker/layers/views.h"
 #include "baker/mesh/surface_query.h"
 #include "baker/motion/clip.h"
 #include "baker/motion/frame_times.h"
@@ -35,33 +36,8 @@ std::vector<FrameOfClip> frames_of(const std::vector<Clip>& clips) {
   return out;
 }
 
-// Triangles that are seen at rest, and pieces that are seen from behind more than from the front.
-struct RestView {
-  std::vector<char> is_seen, is_inverted;
-};
-
-RestView look_at_rest(const MaskSkin& skin) {
-  const std::size_t threads = thread_count();
-  std::vector<SeenPixels> lenses(threads, SeenPixels(skin, kRestPixel * skin.height));
-  for (SeenPixels& lens : lenses) lens.clear();
-  run_parallel(threads, kRestTurns, [&](std::size_t thread, std::size_t turn) {
-    for (const Vec3& eye : view_directions(skin.up, turn)) lenses[thread].look(skin.rest.positions, eye);
-  });
-  RestView out{std::vector<char>(skin.rest.triangles.size()), std::vector<char>(skin.piece_count)};
-  std::vector<std::int64_t> votes(skin.piece_count);
-  for (const SeenPixels& lens : lenses) {
-    for (std::size_t t = 0; t < out.is_seen.size(); ++t) {
-      const auto [front, back] = lens.of_triangle()[t];
-      if (front + back > 0) out.is_seen[t] = 1;
-      votes[skin.piece[t]] += std::int64_t{front} - std::int64_t{back};
-    }
-  }
-  for (std::size_t p = 0; p < votes.size(); ++p) out.is_inverted[p] = votes[p] < 0;
-  return out;
-}
-
 // Pixels that show each triangle in all frames and views, but those of skin that comes through its cover.
-std::vector<std::uint64_t> count_pixels(const Character& character, const MaskSkin& skin, const PokeTest& pokes,
+std::vector<std::uint64_t> count_pixels(const Character& character, const LayeredSkin& skin, const PokeTest& pokes,
                                         const std::vector<FrameOfClip>& frames,
                                         const std::function<void(int, int)>& progress) {
   const std::size_t threads = thread_count();
@@ -92,7 +68,7 @@ std::vector<std::uint64_t> count_pixels(const Character& character, const MaskSk
 }
 
 // The covered triangles and those around them, as far as nobody sees them.
-std::vector<char> unseen_skin(const MaskSkin& skin, const std::vector<Cover>& covers,
+std::vector<char> unseen_skin(const LayeredSkin& skin, const std::vector<Cover>& covers,
                               const std::vector<char>& is_seen) {
   std::vector<char> out(covers.size()), touches(skin.welded.positions.size());
   for (std::size_t t = 0; t < out.size(); ++t) {
@@ -109,7 +85,7 @@ std::vector<char> unseen_skin(const MaskSkin& skin, const std::vector<Cover>& co
 }
 
 // Takes out of `unseen` what lies within `margin` of seen skin of the same piece. Returns how many triangles.
-std::size_t keep_edges(const MaskSkin& skin, double margin, std::vector<char>& unseen) {
+std::size_t keep_edges(const LayeredSkin& skin, double margin, std::vector<char>& unseen) {
   struct Piece {
     std::vector<Index> hidden, shown;
   };
@@ -134,9 +110,9 @@ std::size_t keep_edges(const MaskSkin& skin, double margin, std::vector<char>& u
 
 }  // namespace
 
-HiddenSkin find_hidden(const Character& character, const MaskSkin& skin, const std::vector<Clip>& clips, double margin,
-                       const std::function<void(int, int)>& progress) {
-  RestView rest = look_at_rest(skin);
+HiddenSkin find_hidden(const Character& character, const LayeredSkin& skin, const std::vector<Clip>& clips,
+                       double margin, const std::function<void(int, int)>& progress) {
+  const RestView rest = look_at_rest(skin, kRestTurns, kRestPixel);
   const std::vector<Cover> covers = find_covers(skin, rest.is_inverted);
   const PokeTest pokes(skin, rest.is_inverted, covers, character.rig);
   const std::vector<FrameOfClip> frames = frames_of(clips);
@@ -144,11 +120,12 @@ HiddenSkin find_hidden(const Character& character, const MaskSkin& skin, const s
   const double views = static_cast<double>(frames.size() * view_directions(skin.up, 0).size());
   const double pixel_area = kPixel * kPixel * skin.height * skin.height;
   HiddenSkin out;
-  std::vector<char> is_seen = std::move(rest.is_seen);
+  std::vector<char> is_seen(skin.rest.triangles.size());
   const std::vector<Vec3> normals = pokes.normals(skin.rest.positions);
   for (std::size_t t = 0; t < is_seen.size(); ++t) {
     const double area = triangle_area(skin.rest, t);
     out.area += area;
+    is_seen[t] = rest.seen[t] > 0;
     if (is_seen[t] != 0 && pokes.is_through(static_cast<Index>(t), skin.rest.positions, normals)) is_seen[t] = 0;
     if (static_cast<double>(pixels[t]) * pixel_area > kSeenShare * area * views) is_seen[t] = 1;
   }
