@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <mutex>
 
-#include "baker/layers/cover.h"
+#include "baker/layers/poke_finder.h"
 #include "baker/layers/rest_view.h"
 #include "baker/layers/views.h"
 #include "baker/mesh/surface_query.h"
@@ -36,13 +36,19 @@ std::vector<FrameOfClip> frames_of(const std::vector<Clip>& clips) {
   return out;
 }
 
-// Pixels that show each triangle in all frames and views, but those of skin that comes through its cover.
-std::vector<std::uint64_t> count_pixels(const Character& character, const LayeredSkin& skin, const PokeTest& pokes,
-                                        const std::vector<FrameOfClip>& frames,
-                                        const std::function<void(int, int)>& progress) {
+// What all frames show of each triangle.
+struct Shown {
+  std::vector<std::uint64_t> pixels;  // in all views; none of skin that comes through its cover
+  std::vector<double> poke_areas;     // of skin that shows through another primitive
+};
+
+Shown look_at_frames(const Character& character, const LayeredSkin& skin, const PokeTest& pokes,
+                     const PokeFinder& finder, const std::vector<FrameOfClip>& frames,
+                     const std::function<void(int, int)>& progress) {
   const std::size_t threads = thread_count();
   std::vector<SeenPixels> lenses(threads, SeenPixels(skin, kPixel * skin.height));
-  std::vector<std::vector<std::uint64_t>> counts(threads, std::vector<std::uint64_t>(skin.rest.triangles.size()));
+  const std::size_t triangles = skin.rest.triangles.size();
+  std::vector<Shown> shown(threads, {std::vector<std::uint64_t>(triangles), std::vector<double>(triangles)});
   std::mutex mutex;
   int done = 0;
   run_parallel(threads, frames.size(), [&](std::size_t thread, std::size_t f) {
@@ -53,18 +59,27 @@ std::vector<std::uint64_t> count_pixels(const Character& character, const Layere
     lens.clear();
     for (const Vec3& eye : view_directions(skin.up, f)) lens.look(positions, eye);
     const std::vector<Vec3> normals = pokes.normals(positions);
-    for (Index t = 0; t < counts[thread].size(); ++t) {
+    for (Index t = 0; t < triangles; ++t) {
       const auto [front, back] = lens.of_triangle()[t];
-      if (front + back > 0 && !pokes.is_through(t, positions, normals)) counts[thread][t] += front + back;
+      if (front + back > 0 && !pokes.is_through(t, positions, normals)) shown[thread].pixels[t] += front + back;
+    }
+    if (finder.has_work()) {
+      for (const PokeSpot& spot : finder.find(positions)) {
+        for (std::size_t i = 0; i < spot.triangles.size(); ++i) {
+          shown[thread].poke_areas[spot.triangles[i]] += spot.areas[i];
+        }
+      }
     }
     const std::lock_guard lock(mutex);
     progress(++done, static_cast<int>(frames.size()));
   });
-  std::vector<std::uint64_t> out(skin.rest.triangles.size());
-  for (const std::vector<std::uint64_t>& one : counts) {
-    for (std::size_t t = 0; t < out.size(); ++t) out[t] += one[t];
+  for (std::size_t one = 1; one < threads; ++one) {
+    for (std::size_t t = 0; t < triangles; ++t) {
+      shown[0].pixels[t] += shown[one].pixels[t];
+      shown[0].poke_areas[t] += shown[one].poke_areas[t];
+    }
   }
-  return out;
+  return shown[0];
 }
 
 // The covered triangles and those around them, as far as nobody sees them.
@@ -116,7 +131,8 @@ HiddenSkin find_hidden(const Character& character, const LayeredSkin& skin, cons
   const std::vector<Cover> covers = find_covers(skin, rest.is_inverted);
   const PokeTest pokes(skin, rest.is_inverted, covers, character.rig);
   const std::vector<FrameOfClip> frames = frames_of(clips);
-  const std::vector<std::uint64_t> pixels = count_pixels(character, skin, pokes, frames, progress);
+  const PokeFinder finder(skin, rest, covers, pokes, character.rig);
+  const Shown shown = look_at_frames(character, skin, pokes, finder, frames, progress);
   const double views = static_cast<double>(frames.size() * view_directions(skin.up, 0).size());
   const double pixel_area = kPixel * kPixel * skin.height * skin.height;
   HiddenSkin out;
@@ -127,12 +143,14 @@ HiddenSkin find_hidden(const Character& character, const LayeredSkin& skin, cons
     out.area += area;
     is_seen[t] = rest.seen[t] > 0;
     if (is_seen[t] != 0 && pokes.is_through(static_cast<Index>(t), skin.rest.positions, normals)) is_seen[t] = 0;
-    if (static_cast<double>(pixels[t]) * pixel_area > kSeenShare * area * views) is_seen[t] = 1;
+    if (static_cast<double>(shown.pixels[t]) * pixel_area > kSeenShare * area * views) is_seen[t] = 1;
   }
   out.is_hidden = unseen_skin(skin, covers, is_seen);
   out.near_edge = keep_edges(skin, margin, out.is_hidden);
   for (std::size_t t = 0; t < is_seen.size(); ++t) {
+    out.poke_area += shown.poke_areas[t];
     if (out.is_hidden[t] == 0) continue;
+    out.poke_hidden_area += shown.poke_areas[t];
     ++out.hidden;
     out.hidden_area += triangle_area(skin.rest, t);
   }

@@ -15,6 +15,7 @@ struct HiddenSkin {
   std::size_t hidden = 0;       // triangles
   std::size_t near_edge = 0;    // triangles that are never seen, and stay because of the margin
   double hidden_area = 0, area = 0;
+  double poke_area = 0, poke_hidden_area = 0;  // that shows through clothes, over all frames; of it the hidden
   int frames = 0;
 };
 
