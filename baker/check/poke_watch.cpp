@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/import/glb_file.h"
+#include "baker/mesh/error.h"
+#include "baker/os/child_process.h"
 
 namespace spherechain::baker {
 namespace {
@@ -54,7 +56,13 @@ struct PokeWatch::Layers {
 PokeWatch::PokeWatch(const AnimatedAsset& animated, const std::filesystem::path& source) : animated_(animated) {
   const Character& character = animated.character();
   if (character.buffers.size() < 2 || character.rig.weights.empty()) return;
-  layers_ = std::make_unique<Layers>(character, glb_of_bytes(read_as_glb(source), source.string()).json);
+  try {
+    layers_ = std::make_unique<Layers>(character, glb_of_bytes(read_as_glb(source), source.string()).json);
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error&) {
+    return;  // nobody knows its materials: what covers and what is glass
+  }
   if (!layers_->finder.has_work()) layers_.reset();
   parts_ = body_parts_of(animated.asset());
 }

@@ -15,7 +15,8 @@ namespace spherechain::baker {
 // Looks for skin that shows through clothes in the frames of one character's clips.
 class PokeWatch {
  public:
-  // `animated` must outlive it; `source` is its character's file. A character of one primitive costs nothing.
+  // `animated` must outlive it; `source` is its character's file. A character of one primitive costs nothing. Without
+  // the source as a glTF it finds nothing.
   PokeWatch(const AnimatedAsset& animated, const std::filesystem::path& source);
   ~PokeWatch();
 

@@ -19,7 +19,7 @@ struct PrimitiveRun {
 // The runs of a character in `gltf`, which read_as_glb() made of its file. Throws Error(kFile) where they do not agree.
 std::vector<PrimitiveRun> primitive_runs(const Character& character, const nlohmann::ordered_json& gltf);
 
-// What people call a run: its mesh, or its material where the mesh has several primitives.
+// A run has the name of its mesh, or of its material where the mesh has several primitives.
 std::string run_name(const PrimitiveRun& run, const nlohmann::ordered_json& gltf);
 
 // A character's triangles at rest, as they are drawn and as they hang together. Triangles have the source's numbers.

@@ -36,7 +36,7 @@ std::vector<FrameOfClip> frames_of(const std::vector<Clip>& clips) {
   return out;
 }
 
-// What all frames show of each triangle.
+// The pixels and the poke-through of each triangle, summed over all frames.
 struct Shown {
   std::vector<std::uint64_t> pixels;  // in all views; none of skin that comes through its cover
   std::vector<double> poke_areas;     // of skin that shows through another primitive
