@@ -121,7 +121,7 @@ Verdict evaluate_clips(const std::vector<CheckedClip>& clips, const std::vector<
   std::set<std::string> noted;                  // of recordings, which several characters play
   for (const CheckedClip& clip : clips) {
     const CharacterRules& of = characters[clip.character];
-    EvaluatedClip evaluated{of.name, of.file, {}, {}, clip, 0, 0, 30, false, {}, {}, {}};
+    EvaluatedClip evaluated{of.name, of.file, {}, {}, clip, 0, 0, 30, false, {}, {}};
     if (clip.error.empty() && !clip.clip.empty()) {
       const std::optional<ClipResult> result = read_clip_result(store.take(clip.key, kResultFile));
       if (!result) store.fail_lost();

@@ -41,8 +41,8 @@ struct EvaluatedClip {
   double fps = 30;
   bool loops = false;
   std::vector<EvaluatedEvent> events;       // the checked events, then the resolved ones
-  std::vector<EvaluatedPoke> pokes;         // the largest first
   std::map<PenetrationClass, int> besides;  // counts of classes that are not listed
+  std::vector<EvaluatedPoke> pokes{};       // the largest first
 };
 
 struct Summary {
