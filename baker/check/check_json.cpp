@@ -25,6 +25,12 @@ ordered_json evaluated_json(const EvaluatedEvent& evaluated) {
 ordered_json clip_json(const EvaluatedClip& clip) {
   ordered_json events = ordered_json::array();
   for (const EvaluatedEvent& event : clip.events) events.push_back(evaluated_json(event));
+  for (const EvaluatedPoke& poke : clip.pokes) {
+    ordered_json& event = events.emplace_back(poke_json(poke.event));
+    event["state"] = state_name(EventState::kKnown);
+    event["rule"] = nullptr;
+    event["fails"] = false;
+  }
   ordered_json besides = ordered_json::object();
   for (const auto& [kind, count] : clip.besides) besides[sc_penetration_class_name(kind)] = count;
   ordered_json out{{"character", clip.character},   {"clip", clip.clip.clip},
@@ -77,6 +83,7 @@ std::string check_json(const Verdict& verdict) {
                       {"tickets", verdict.tickets.size()},
                       {"penetrations", s.penetrations},
                       {"deep_folds", s.deep_folds},
+                      {"pokes", s.pokes},
                       {"new", s.fresh},
                       {"worse", s.worse},
                       {"accepted", s.accepted},

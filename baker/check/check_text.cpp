@@ -33,6 +33,17 @@ std::string counted(int count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
+// "hero.glb walk  poke-through: 3 spots, worst 12 cm2 of body through shirt at abdomen, frames 40-65"
+std::string pokes_text(const EvaluatedClip& clip) {
+  if (clip.pokes.empty()) return {};
+  const PokeEvent& worst = clip.pokes.front().event;
+  const std::string frames = worst.from == worst.to ? "frame " + frame_text(worst.from)
+                                                    : "frames " + frame_text(worst.from) + "-" + frame_text(worst.to);
+  return fmt::format("{}  poke-through: {}, worst {:.0f} cm2 of {}, {}\n", clip_text(clip),
+                     counted(static_cast<int>(clip.pokes.size()), "spot", "spots"), worst.area_cm2, poke_text(worst),
+                     frames);
+}
+
 std::string summary_text(const Summary& s, std::size_t tickets) {
   std::string out =
       fmt::format("{}, {}, {} frames: {}", counted(s.characters, "character", "characters"),
@@ -59,6 +70,10 @@ std::string summary_text(const Summary& s, std::size_t tickets) {
 
 std::string parts_text(const Event& event) {
   return event.parts[0] == event.parts[1] ? event.parts[0] + " in itself" : event.parts[0] + " in " + event.parts[1];
+}
+
+std::string poke_text(const PokeEvent& event) {
+  return event.pieces[0] + " through " + event.pieces[1] + (event.part.empty() ? "" : " at " + event.part);
 }
 
 std::string frames_text(const Event& event) {
@@ -109,6 +124,9 @@ std::string check_text(const Verdict& verdict, bool only_new) {
   for (const auto& row : rows) {
     for (std::size_t k = 0; k < 3; ++k) out += fmt::format("{:{}}  ", row[k], widths[k]);
     out += row[3] + "\n";
+  }
+  for (const EvaluatedClip& clip : verdict.clips) {
+    if (!only_new) out += pokes_text(clip);
   }
   for (const std::string& note : verdict.notes) errors += "note: " + note + "\n";
   return out + errors + (out.empty() && errors.empty() ? "" : "\n") +

@@ -16,10 +16,11 @@ constexpr std::size_t kSampleSize = 1500;
 
 }  // namespace
 
-ClipChecker::ClipChecker(const AnimatedAsset& animated, Target target)
+ClipChecker::ClipChecker(const AnimatedAsset& animated, const std::filesystem::path& source, Target target)
     : animated_(animated),
       axes_(page_axes(animated)),
       finder_(animated, target, axes_),
+      pokes_(animated, source),
       picture_(animated.character().source_positions, animated.character().source_triangles, axes_) {
   animated.check_clusters();
 }
@@ -43,10 +44,12 @@ ClipCheck ClipChecker::check(std::size_t index, const Progress& progress) {
   ClipEvents found = finder_.find(clip, [&](int frame, const Deformation& pose) {
     progress(frame, clip.count);
     motion.add(pose, pose.positions.empty() ? deform(sample_, sample_weights_, pose.bones) : pose.positions);
+    pokes_.look(clip, frame, pose);
   });
+  PokeWatch::Found pokes = pokes_.take(clip);
   ClipCheck out;
   out.heat = heat_of(found, mm_per_unit(animated_.asset()));
-  out.page = clip_page(animated_, clip, found, motion);
+  out.page = clip_page(animated_, clip, found, pokes.shown, motion);
   out.pictures = draw_events(animated_, clip, found, picture_);
   out.result.frames = clip.count - clip.between;
   out.result.between = clip.between;
@@ -54,6 +57,7 @@ ClipCheck ClipChecker::check(std::size_t index, const Progress& progress) {
   out.result.loops = found.loops;
   out.result.unseen = std::move(found.unseen);
   out.result.events = std::move(found.events);
+  out.result.pokes = std::move(pokes.events);
   return out;
 }
 

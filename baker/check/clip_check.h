@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "baker/check/heat.h"
 #include "baker/check/picture.h"
+#include "baker/check/poke_watch.h"
 #include "baker/check/results.h"
 #include "baker/events/find_events.h"
 #include "baker/play/play.h"
@@ -24,9 +26,9 @@ struct ClipCheck {
 // Checks the clips of one character after another: finds events, draws them, and fills their page.
 class ClipChecker {
  public:
-  // `animated` must outlive it, and may play other motions in between. Throws Error(kFile) where the asset has no
-  // clusters.
-  ClipChecker(const AnimatedAsset& animated, Target target);
+  // `animated`, of the character in the file `source`, must outlive it, and may play other motions in between. Throws
+  // Error(kFile) where the asset has no clusters.
+  ClipChecker(const AnimatedAsset& animated, const std::filesystem::path& source, Target target);
 
   // Called after each frame: `done` frames of `all` have been checked.
   using Progress = std::function<void(int done, int all)>;
@@ -39,6 +41,7 @@ class ClipChecker {
   const AnimatedAsset& animated_;
   BodyFrame axes_;
   EventFinder finder_;
+  PokeWatch pokes_;
   Picture picture_;
   std::vector<Vec3> sample_;  // some of the rest positions: they say where the character is
   std::vector<VertexWeights> sample_weights_;

@@ -45,7 +45,8 @@ class ClipWorker {
                              MotionChoice{}, frames);
             if (!has_page) page = character_page(*animated);
           });
-          checker.emplace(*animated, choose_target("auto"));
+          do_unchanged(character.of->file, character.hash,
+                       [&] { checker.emplace(*animated, character.of->file, choose_target("auto")); });
         }
         take_notes();  // of the character, and of clips before this one
         if (next.unit != kOwnClips) {

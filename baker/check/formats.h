@@ -20,6 +20,8 @@ std::string check_sarif(const Verdict& verdict);
 
 // "right hand in left thigh".
 std::string parts_text(const Event& event);
+// "body through shirt at abdomen".
+std::string poke_text(const PokeEvent& event);
 // "frames 34-41"; with frames among them that are no fault "frames 34-41, 5 faulty"; over a loop's seam "frames 28-3
 // (over the loop)".
 std::string frames_text(const Event& event);

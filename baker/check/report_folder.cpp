@@ -59,6 +59,17 @@ ordered_json page_event(const EvaluatedEvent& evaluated) {
   return out;
 }
 
+ordered_json page_poke(const EvaluatedPoke& poke) {
+  ordered_json out = poke_json(poke.event);
+  for (const char* key : {"area_cm2", "height_mm"}) out[key] = std::round(10 * out[key].get<double>()) / 10;
+  out["text"] = poke_text(poke.event);
+  out["place"] = poke.event.place;
+  out["state"] = state_name(EventState::kKnown);
+  out["fails"] = false;
+  out["poke"] = poke.number;
+  return out;
+}
+
 std::string data_name(const std::string& key) { return "data/" + key.substr(0, 2) + "/" + key.substr(2, 30); }
 
 // The frame of the worst fault that no rule excuses, as in the library's row; else the clip's first frame.
@@ -117,6 +128,7 @@ ordered_json page_clip(const EvaluatedClip& clip) {
       ++minor;
     }
   }
+  for (const EvaluatedPoke& poke : clip.pokes) events.push_back(page_poke(poke));
   for (const auto& [kind, count] : clip.besides) minor += count;
   out["minor"] = minor;
   return out;

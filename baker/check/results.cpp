@@ -28,11 +28,14 @@ std::optional<Result> read_whole(const std::string& bytes, const Read& read) {
 std::string to_bytes(const ClipResult& result) {
   ordered_json events = ordered_json::array();
   for (const Event& event : result.events) events.push_back(stored_event(event));
+  ordered_json pokes = ordered_json::array();
+  for (const PokeEvent& event : result.pokes) pokes.push_back(stored_poke(event));
   return json_text({{"frames", result.frames},
                     {"between", result.between},
                     {"fps", result.fps},
                     {"loops", result.loops},
                     {"events", events},
+                    {"pokes", pokes},
                     {"note", result.note},
                     {"unseen", result.unseen},
                     {"continuous", result.continuous}},
@@ -57,6 +60,7 @@ std::optional<ClipResult> read_clip_result(const std::string& bytes) {
     json.at("fps").get_to(out.fps);
     json.at("loops").get_to(out.loops);
     for (const ordered_json& event : json.at("events")) out.events.push_back(read_stored_event(event));
+    for (const ordered_json& event : json.at("pokes")) out.pokes.push_back(read_stored_poke(event));
     json.at("note").get_to(out.note);
     json.at("unseen").get_to(out.unseen);
     json.at("continuous").get_to(out.continuous);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "baker/events/event.h"
+#include "baker/events/poke_event.h"
 
 // Results of a check before any rule. They depend only on the character, clip, settings and tool.
 namespace spherechain::baker {
@@ -16,10 +17,11 @@ struct ClipResult {
   int between = 0;  // poses between them that were looked at, too
   double fps = 30;
   bool loops = false;
-  std::vector<Event> events;  // by where they begin
-  std::string note;           // what is wrong with the recording and does not keep it from being read
-  std::string unseen;         // text of unseen_text()
-  bool continuous = false;    // contacts between frames were checked, too
+  std::vector<Event> events;     // by where they begin
+  std::vector<PokeEvent> pokes;  // the largest first
+  std::string note;              // what is wrong with the recording and does not keep it from being read
+  std::string unseen;            // text of unseen_text()
+  bool continuous = false;       // contacts between frames were checked, too
 };
 
 // The facts about an asset that the check of its character needs.

@@ -92,6 +92,7 @@ class Evaluator {
 
 void count(Summary& out, const EvaluatedClip& clip) {
   ++out.clips;
+  out.pokes += static_cast<int>(clip.pokes.size());
   out.frames += clip.frames;
   out.seconds += clip.frames / clip.fps;
   for (const auto& [kind, number] : clip.besides) out.besides[kind] += number;
@@ -132,6 +133,10 @@ Verdict evaluate_clips(const std::vector<CheckedClip>& clips, const std::vector<
       if (!is_reported) out.notes.push_back(clip.clip + ": " + result->note);
       if (!result->unseen.empty()) out.notes.push_back(of.name + " " + clip.clip + ": " + result->unseen);
       by.events(evaluated, *result, of.rules);
+      for (std::size_t i = 0; i < result->pokes.size(); ++i) {
+        const PokeEvent& event = result->pokes[i];
+        if (!of.rules.leaves_out({event.part, event.part})) evaluated.pokes.push_back({event, i});
+      }
       count(out.summary, evaluated);
     }
     if (clip.error.empty() && !clip.character_key.empty()) {

@@ -27,6 +27,12 @@ struct EvaluatedEvent {
   bool is_open() const { return state != EventState::kResolved && is_fault(event.kind) && rule.empty(); }
 };
 
+// Skin that shows through clothes: a warning, whatever rules and baseline say.
+struct EvaluatedPoke {
+  PokeEvent event;
+  std::size_t number;  // among those of the clip
+};
+
 struct EvaluatedClip {
   std::string character, file, grade;  // name; path as given; grade of the fit
   std::string fit;                     // the grade as a sentence
@@ -36,11 +42,12 @@ struct EvaluatedClip {
   bool loops = false;
   std::vector<EvaluatedEvent> events;       // the checked events, then the resolved ones
   std::map<PenetrationClass, int> besides;  // counts of classes that are not listed
+  std::vector<EvaluatedPoke> pokes{};       // the largest first
 };
 
 struct Summary {
   int characters = 0, clips = 0, events = 0, penetrations = 0, deep_folds = 0, fresh = 0, worse = 0, accepted = 0,
-      resolved = 0, errors = 0;
+      resolved = 0, errors = 0, pokes = 0;
   long frames = 0;
   double seconds = 0;                       // of motion
   std::map<PenetrationClass, int> besides;  // events of classes that are counted only

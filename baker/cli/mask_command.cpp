@@ -78,7 +78,7 @@ ExitCode run_mask(const MaskOptions& options) {
     GlbFile glb = glb_of_bytes(read_as_glb(options.input), options.input);
     const Character character = import_character(options.input, import);
     const std::vector<PrimitiveRun> runs = primitive_runs(character, glb.json);
-    const MaskSkin skin = make_mask_skin(character, runs, glb.json);
+    const LayeredSkin skin = make_layered_skin(character, runs, glb.json);
     const std::vector<Clip> clips = clips_for_mask(character, options.input, import, options.motions,
                                                    [&](const std::string& doing) { progress.show(doing); });
     for (const Clip& clip : clips) clip_names.push_back(clip.name);

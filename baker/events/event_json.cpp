@@ -8,13 +8,8 @@
 #include "baker/report/vec3_json.h"
 
 namespace spherechain::baker {
-namespace {
 
 using nlohmann::ordered_json;
-
-Vec3 read_vec3(const ordered_json& v) { return {v.at(0).get<double>(), v.at(1).get<double>(), v.at(2).get<double>()}; }
-
-}  // namespace
 
 ordered_json event_json(const Event& event) {
   ordered_json out{{"parts", event.parts},

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <mutex>
 
-#include "baker/mask/cover.h"
-#include "baker/mask/views.h"
+#include "baker/layers/poke_finder.h"
+#include "baker/layers/rest_view.h"
+#include "baker/layers/views.h"
 #include "baker/mesh/surface_query.h"
 #include "baker/motion/clip.h"
 #include "baker/motion/frame_times.h"
@@ -35,38 +36,19 @@ std::vector<FrameOfClip> frames_of(const std::vector<Clip>& clips) {
   return out;
 }
 
-// Triangles that are seen at rest, and pieces that are seen from behind more than from the front.
-struct RestView {
-  std::vector<char> is_seen, is_inverted;
+// The pixels and the poke-through of each triangle, summed over all frames.
+struct Shown {
+  std::vector<std::uint64_t> pixels;  // in all views; none of skin that comes through its cover
+  std::vector<double> poke_areas;     // of skin that shows through another primitive
 };
 
-RestView look_at_rest(const MaskSkin& skin) {
-  const std::size_t threads = thread_count();
-  std::vector<SeenPixels> lenses(threads, SeenPixels(skin, kRestPixel * skin.height));
-  for (SeenPixels& lens : lenses) lens.clear();
-  run_parallel(threads, kRestTurns, [&](std::size_t thread, std::size_t turn) {
-    for (const Vec3& eye : view_directions(skin.up, turn)) lenses[thread].look(skin.rest.positions, eye);
-  });
-  RestView out{std::vector<char>(skin.rest.triangles.size()), std::vector<char>(skin.piece_count)};
-  std::vector<std::int64_t> votes(skin.piece_count);
-  for (const SeenPixels& lens : lenses) {
-    for (std::size_t t = 0; t < out.is_seen.size(); ++t) {
-      const auto [front, back] = lens.of_triangle()[t];
-      if (front + back > 0) out.is_seen[t] = 1;
-      votes[skin.piece[t]] += std::int64_t{front} - std::int64_t{back};
-    }
-  }
-  for (std::size_t p = 0; p < votes.size(); ++p) out.is_inverted[p] = votes[p] < 0;
-  return out;
-}
-
-// Pixels that show each triangle in all frames and views, but those of skin that comes through its cover.
-std::vector<std::uint64_t> count_pixels(const Character& character, const MaskSkin& skin, const PokeTest& pokes,
-                                        const std::vector<FrameOfClip>& frames,
-                                        const std::function<void(int, int)>& progress) {
+Shown look_at_frames(const Character& character, const LayeredSkin& skin, const PokeTest& pokes,
+                     const PokeFinder& finder, const std::vector<FrameOfClip>& frames,
+                     const std::function<void(int, int)>& progress) {
   const std::size_t threads = thread_count();
   std::vector<SeenPixels> lenses(threads, SeenPixels(skin, kPixel * skin.height));
-  std::vector<std::vector<std::uint64_t>> counts(threads, std::vector<std::uint64_t>(skin.rest.triangles.size()));
+  const std::size_t triangles = skin.rest.triangles.size();
+  std::vector<Shown> shown(threads, {std::vector<std::uint64_t>(triangles), std::vector<double>(triangles)});
   std::mutex mutex;
   int done = 0;
   run_parallel(threads, frames.size(), [&](std::size_t thread, std::size_t f) {
@@ -77,22 +59,31 @@ std::vector<std::uint64_t> count_pixels(const Character& character, const MaskSk
     lens.clear();
     for (const Vec3& eye : view_directions(skin.up, f)) lens.look(positions, eye);
     const std::vector<Vec3> normals = pokes.normals(positions);
-    for (Index t = 0; t < counts[thread].size(); ++t) {
+    for (Index t = 0; t < triangles; ++t) {
       const auto [front, back] = lens.of_triangle()[t];
-      if (front + back > 0 && !pokes.is_through(t, positions, normals)) counts[thread][t] += front + back;
+      if (front + back > 0 && !pokes.is_through(t, positions, normals)) shown[thread].pixels[t] += front + back;
+    }
+    if (finder.has_work()) {
+      for (const PokeSpot& spot : finder.find(positions)) {
+        for (std::size_t i = 0; i < spot.triangles.size(); ++i) {
+          shown[thread].poke_areas[spot.triangles[i]] += spot.areas[i];
+        }
+      }
     }
     const std::lock_guard lock(mutex);
     progress(++done, static_cast<int>(frames.size()));
   });
-  std::vector<std::uint64_t> out(skin.rest.triangles.size());
-  for (const std::vector<std::uint64_t>& one : counts) {
-    for (std::size_t t = 0; t < out.size(); ++t) out[t] += one[t];
+  for (std::size_t one = 1; one < threads; ++one) {
+    for (std::size_t t = 0; t < triangles; ++t) {
+      shown[0].pixels[t] += shown[one].pixels[t];
+      shown[0].poke_areas[t] += shown[one].poke_areas[t];
+    }
   }
-  return out;
+  return shown[0];
 }
 
 // The covered triangles and those around them, as far as nobody sees them.
-std::vector<char> unseen_skin(const MaskSkin& skin, const std::vector<Cover>& covers,
+std::vector<char> unseen_skin(const LayeredSkin& skin, const std::vector<Cover>& covers,
                               const std::vector<char>& is_seen) {
   std::vector<char> out(covers.size()), touches(skin.welded.positions.size());
   for (std::size_t t = 0; t < out.size(); ++t) {
@@ -109,7 +100,7 @@ std::vector<char> unseen_skin(const MaskSkin& skin, const std::vector<Cover>& co
 }
 
 // Takes out of `unseen` what lies within `margin` of seen skin of the same piece. Returns how many triangles.
-std::size_t keep_edges(const MaskSkin& skin, double margin, std::vector<char>& unseen) {
+std::size_t keep_edges(const LayeredSkin& skin, double margin, std::vector<char>& unseen) {
   struct Piece {
     std::vector<Index> hidden, shown;
   };
@@ -134,28 +125,32 @@ std::size_t keep_edges(const MaskSkin& skin, double margin, std::vector<char>& u
 
 }  // namespace
 
-HiddenSkin find_hidden(const Character& character, const MaskSkin& skin, const std::vector<Clip>& clips, double margin,
-                       const std::function<void(int, int)>& progress) {
-  RestView rest = look_at_rest(skin);
+HiddenSkin find_hidden(const Character& character, const LayeredSkin& skin, const std::vector<Clip>& clips,
+                       double margin, const std::function<void(int, int)>& progress) {
+  const RestView rest = look_at_rest(skin, kRestTurns, kRestPixel);
   const std::vector<Cover> covers = find_covers(skin, rest.is_inverted);
   const PokeTest pokes(skin, rest.is_inverted, covers, character.rig);
   const std::vector<FrameOfClip> frames = frames_of(clips);
-  const std::vector<std::uint64_t> pixels = count_pixels(character, skin, pokes, frames, progress);
+  const PokeFinder finder(skin, rest, covers, pokes, character.rig);
+  const Shown shown = look_at_frames(character, skin, pokes, finder, frames, progress);
   const double views = static_cast<double>(frames.size() * view_directions(skin.up, 0).size());
   const double pixel_area = kPixel * kPixel * skin.height * skin.height;
   HiddenSkin out;
-  std::vector<char> is_seen = std::move(rest.is_seen);
+  std::vector<char> is_seen(skin.rest.triangles.size());
   const std::vector<Vec3> normals = pokes.normals(skin.rest.positions);
   for (std::size_t t = 0; t < is_seen.size(); ++t) {
     const double area = triangle_area(skin.rest, t);
     out.area += area;
+    is_seen[t] = rest.seen[t] > 0;
     if (is_seen[t] != 0 && pokes.is_through(static_cast<Index>(t), skin.rest.positions, normals)) is_seen[t] = 0;
-    if (static_cast<double>(pixels[t]) * pixel_area > kSeenShare * area * views) is_seen[t] = 1;
+    if (static_cast<double>(shown.pixels[t]) * pixel_area > kSeenShare * area * views) is_seen[t] = 1;
   }
   out.is_hidden = unseen_skin(skin, covers, is_seen);
   out.near_edge = keep_edges(skin, margin, out.is_hidden);
   for (std::size_t t = 0; t < is_seen.size(); ++t) {
+    out.poke_area += shown.poke_areas[t];
     if (out.is_hidden[t] == 0) continue;
+    out.poke_hidden_area += shown.poke_areas[t];
     ++out.hidden;
     out.hidden_area += triangle_area(skin.rest, t);
   }

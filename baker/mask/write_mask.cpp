@@ -179,7 +179,9 @@ std::string mask_json(const std::vector<HiddenMesh>& meshes, const HiddenSkin& s
   }
   text += "\n ],\n \"area_percent\": " + dump(percent(skin.hidden_area, skin.area)) + ",\n \"hidden_percent\": " +
           dump(percent(static_cast<double>(skin.hidden), static_cast<double>(skin.is_hidden.size()))) +
-          ",\n \"clips\": " + dump(clips) + ",\n \"poke_removed_percent\": null\n}\n";
+          ",\n \"clips\": " + dump(clips) + ",\n \"poke_removed_percent\": " +
+          dump(skin.poke_area > 0 ? ordered_json(percent(skin.poke_hidden_area, skin.poke_area)) : ordered_json()) +
+          "\n}\n";
   return text;
 }
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "baker/import/glb_file.h"
+#include "baker/layers/skin.h"
 #include "baker/mask/find_hidden.h"
-#include "baker/mask/skin.h"
 
 namespace spherechain::baker {
 

@@ -11,7 +11,7 @@
 namespace spherechain::baker {
 
 std::string clip_page(const AnimatedAsset& animated, const ClipFrames& clip, const ClipEvents& found,
-                      const PageMotion& motion) {
+                      const std::vector<PagePoke>& pokes, const PageMotion& motion) {
   FrameLists<TrianglePair> contacts;
   FrameLists<PenetrationEntry> penetrations;
   for (std::size_t i = 0, m = 0; i < static_cast<std::size_t>(clip.count); ++i) {
@@ -33,7 +33,10 @@ std::string clip_page(const AnimatedAsset& animated, const ClipFrames& clip, con
     numbers.push_back(static_cast<float>(animated.number(i)));
     seconds.push_back(static_cast<float>(animated.number(i) / clip.fps));
   }
-  return json_text({{"frames",
+  nlohmann::ordered_json shown = nlohmann::ordered_json::array();
+  for (const PagePoke& poke : pokes) shown.push_back({{"pieces", poke.pieces}, {"triangles", base64(poke.triangles)}});
+  return json_text({{"pokes", std::move(shown)},
+                    {"frames",
                      {{"count", clip.count},
                       {"fps", clip.fps},
                       {"numbers", base64(numbers)},

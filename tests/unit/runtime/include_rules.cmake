@@ -5,7 +5,7 @@
 # The folders of the runtime and of the baker. Each may include those before it and itself.
 set(rooms base simd asset pose refit pairs triangles skin clusters contacts depth inside penetrations step bodies crowd)
 set(room_size 15)  # files
-set(stages mesh os import roles segment wrap fit chains rig bind edits clusters write calibrate pipeline motion play volumes filter mask truth report events
+set(stages mesh os import roles segment wrap fit chains rig bind edits clusters layers write calibrate pipeline motion play volumes filter mask truth report events
   page check fix export cli)
 
 file(GLOB_RECURSE sources ${ROOT}/runtime/*.h ${ROOT}/runtime/*.cpp ${ROOT}/runtime/*.cc ${ROOT}/runtime/*.inl

@@ -170,6 +170,7 @@ export function start(model, listed = []) {
     const contact = model.contacts.now(store.state.frame).find((other) => other.key === key);
     if (contact) stage?.flyToContact(skin.ballOf(contact.triangles), camera);
   };
+  const flyToTriangles = (triangles, camera) => stage?.flyToContact(skin.ballOf(triangles), camera);
   if (model.change) addOver($('reset'), store);
   fillClips($('clip'), store, model);
   fillControls($('controls'), store, model);
@@ -208,5 +209,5 @@ export function start(model, listed = []) {
     edits: () => layers.editor?.read() ?? null,
     ready: true,
   });
-  return { store, flyToContact, skinLayer: layers.skinLayer, redraw: () => stage?.invalidate() };
+  return { store, flyToContact, flyToTriangles, skinLayer: layers.skinLayer, redraw: () => stage?.invalidate() };
 }

@@ -137,7 +137,7 @@ TEST_CASE("mask: skin in a tube is hidden, but not near the tube's rims") {
   CHECK(found["clips"] == json{"rise"});
   const auto hidden = static_cast<double>(found["meshes"][0]["hidden"].size());
   CHECK(found["hidden_percent"].get<double>() == doctest::Approx(hidden / (72 + 16) / 48 * 100));
-  CHECK(found["poke_removed_percent"].is_null());
+  CHECK(found["poke_removed_percent"].is_null());  // nothing shows
   const std::string page = tool::contents(SPHERECHAIN_SAMPLES "/../docs/json.md");
   for (const auto& [key, value] : found.items()) CHECK_MESSAGE(page.find("`" + key + "`") != std::string::npos, key);
   for (const auto& [key, value] : found["meshes"][0].items()) CHECK(page.find("`" + key + "`") != std::string::npos);

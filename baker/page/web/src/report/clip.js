@@ -71,7 +71,7 @@ async function main() {
   const panel = addTab('Events');
   const viewer = start(model, eventKeys);
   document.title = `${row.character} ${row.clip} · spherechain`;
-  fillEvents(panel, { rows, row, fit: fits[row.body], model, ...viewer });
+  fillEvents(panel, { rows, row, fit: fits[row.body], model, pokes: clip.pokes, ...viewer });
 }
 
 main().catch((error) => say(`The report is not whole: ${error.message}.`));

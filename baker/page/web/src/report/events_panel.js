@@ -1,5 +1,6 @@
 import { h } from '../base/dom.js';
 import { insideText, millimetres } from '../model/contacts.js';
+import { decode } from '../model/frame_lists.js';
 import { clipLink, readLink } from './links.js';
 import { isAccepted, isFault, onMarks, percent, toggleAccepted } from './marks.js';
 
@@ -11,7 +12,23 @@ const timecode = (frame, fps) => {
   return `${two(Math.floor(seconds / 60))}:${two(seconds % 60)}:${two(Math.floor(frame - seconds * fps))}`;
 };
 
-const classText = (event) => (event.class === 'inside' ? insideText(event) : event.class.replace('_', ' '));
+// Skin in one colour, the piece that it shows through in another, and what shows as a contact: linear, of 255.
+const SKIN = [225, 130, 75, 170];
+const CLOTH = [35, 90, 200, 170];
+const SHOWS = [190, 8, 20, 255];
+
+function paintPoke(skinLayer, { pieces, triangles }) {
+  const shows = new Set(decode(triangles, Uint32Array));
+  const isIn = (t, [first, count]) => t >= first && t < first + count;
+  skinLayer.paint((t) => (shows.has(t) ? SHOWS : isIn(t, pieces[0]) ? SKIN : isIn(t, pieces[1]) ? CLOTH : null));
+}
+
+const sizeText = (event) =>
+  event.class === 'poke'
+    ? `${event.area_cm2} cm²`
+    : `${millimetres(event.depth_mm)}${event.depth_percent === undefined ? '' : `, ${percent(event.depth_percent)}`}`;
+const classText = (event) =>
+  event.class === 'poke' ? `poke-through, ${millimetres(event.height_mm)} high, a warning` : (event.class === 'inside' ? insideText(event) : event.class.replace('_', ' '));
 
 // The bake's spheres, with the verdict on them: the skin's contacts do not depend on it.
 export function spheresSection(store, fit) {
@@ -30,7 +47,7 @@ export const eventKeys = [
   ['A', 'Accept the event, or take that back'],
 ];
 
-export function fillEvents(panel, { rows, row, fit, model, store, flyToContact }) {
+export function fillEvents(panel, { rows, row, fit, model, pokes, store, flyToContact, flyToTriangles, skinLayer, redraw }) {
   const events = row.events;
   const names = model.parts.map(({ name }) => name);
   const partOf = (name) => model.parts[names.indexOf(name)]?.part;
@@ -41,9 +58,17 @@ export function fillEvents(panel, { rows, row, fit, model, store, flyToContact }
     if (!event || event.state === 'resolved') return;
     chosen = index;
     history.replaceState(null, '', clipLink(row, index));
-    const key = event.parts.map(partOf).sort((a, b) => a - b).join('-');
+    const isPoke = event.class === 'poke';
+    const key = isPoke ? null : event.parts.map(partOf).sort((a, b) => a - b).join('-');
     store.set({ frame: event.place, playing: false, contact: key });
-    flyToContact(key, event.camera);
+    if (isPoke) {
+      paintPoke(skinLayer, pokes[event.poke]);
+      flyToTriangles(decode(pokes[event.poke].triangles, Uint32Array), event.camera);
+    } else {
+      skinLayer.paint(() => null);
+      flyToContact(key, event.camera);
+    }
+    redraw();
     draw();
   };
 
@@ -64,9 +89,9 @@ export function fillEvents(panel, { rows, row, fit, model, store, flyToContact }
         'button',
         { type: 'button', class: 'pair event', 'aria-pressed': `${index === chosen}`, disabled: gone, onclick: () => go(index) },
         h('span', { class: 'part-names' }, event.text),
-        h('span', { class: 'count' }, `${millimetres(event.depth_mm)}${event.depth_percent === undefined ? '' : `, ${percent(event.depth_percent)}`}`),
+        h('span', { class: 'count' }, sizeText(event)),
         h('span', { class: 'when' }, `${frames}${event.from === event.to ? '' : `, worst at ${event.deepest}`} (${timecode(event.deepest, row.fps)})`),
-        h('span', { class: `when ${event.fails && !isAccepted(row, event) ? 'warning' : ''}` }, `${classText(event)}, ${state(event)}${event.volume_ml === undefined ? '' : `, ${event.volume_ml} ml`}`),
+        h('span', { class: `when ${event.fails && !isAccepted(row, event) ? 'warning' : ''}` }, `${classText(event)}${event.class === 'poke' ? '' : `, ${state(event)}`}${event.volume_ml === undefined ? '' : `, ${event.volume_ml} ml`}`),
       ),
       index === chosen && isFault(event) && !event.rule && event.state !== 'accepted' &&
         h('button', { type: 'button', class: 'accept', onclick: () => { toggleAccepted(row, event); draw(); } }, isAccepted(row, event) ? 'Accepted: take back (A)' : 'Accept (A)'),
@@ -81,7 +106,7 @@ export function fillEvents(panel, { rows, row, fit, model, store, flyToContact }
   function draw() {
     const excused = events.filter(({ rule }) => rule).length;
     const faults = events.filter((event) => isFault(event) && !event.rule && event.state !== 'resolved').length;
-    summary.textContent = (faults === 0 ? 'No fault in this clip' : `${faults} ${faults === 1 ? 'fault' : 'faults'}`) + (excused > 0 ? `, ${excused} more excused by rules` : '');
+    summary.textContent = (faults === 0 ? 'No fault in this clip' : `${faults} ${faults === 1 ? 'fault' : 'faults'}`) + (pokes.length > 0 ? `, skin shows through clothes ${pokes.length} times` : '') + (excused > 0 ? `, ${excused} more excused by rules` : '');
     list.replaceChildren(...events.map(item));
     list.querySelector('.chosen')?.scrollIntoView({ block: 'nearest' });
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "baker/mask/views.h"
+#include "baker/layers/views.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "baker/mask/skin.h"
+#include "baker/layers/skin.h"
 
 namespace spherechain::baker {
 
@@ -17,7 +17,7 @@ std::vector<Vec3> view_directions(const Vec3& up, std::size_t turn);
 class SeenPixels {
  public:
   // `pixel`: the size of a pixel.
-  SeenPixels(const MaskSkin& skin, double pixel) : skin_(skin), pixel_(pixel) {}
+  SeenPixels(const LayeredSkin& skin, double pixel) : skin_(skin), pixel_(pixel) {}
 
   // Adds what an eye in the direction `eye` sees of `positions`, the source's vertices.
   void look(const std::vector<Vec3>& positions, const Vec3& eye);
@@ -29,7 +29,7 @@ class SeenPixels {
  private:
   void draw(Index triangle);
 
-  const MaskSkin& skin_;
+  const LayeredSkin& skin_;
   double pixel_;
   std::vector<std::array<std::uint32_t, 2>> seen_;
   std::vector<std::array<float, 3>> points_;  // of the vertices: pixels from the left, from below, towards the eye

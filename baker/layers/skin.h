@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 #include <vector>
 
 #include "baker/import/import.h"
@@ -18,8 +19,11 @@ struct PrimitiveRun {
 // The runs of a character in `gltf`, which read_as_glb() made of its file. Throws Error(kFile) where they do not agree.
 std::vector<PrimitiveRun> primitive_runs(const Character& character, const nlohmann::ordered_json& gltf);
 
+// A run has the name of its mesh, or of its material where the mesh has several primitives.
+std::string run_name(const PrimitiveRun& run, const nlohmann::ordered_json& gltf);
+
 // A character's triangles at rest, as they are drawn and as they hang together. Triangles have the source's numbers.
-struct MaskSkin {
+struct LayeredSkin {
   Mesh rest;                 // the source's vertices and triangles
   Mesh welded;               // the same triangles on vertices that are joined where they are at one position
   std::vector<Index> piece;  // of each triangle: a connected piece
@@ -31,7 +35,7 @@ struct MaskSkin {
   double height;
 };
 
-MaskSkin make_mask_skin(const Character& character, const std::vector<PrimitiveRun>& runs,
-                        const nlohmann::ordered_json& gltf);
+LayeredSkin make_layered_skin(const Character& character, const std::vector<PrimitiveRun>& runs,
+                              const nlohmann::ordered_json& gltf);
 
 }  // namespace spherechain::baker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "baker/mask/skin.h"
+#include "baker/layers/skin.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -77,8 +77,19 @@ std::vector<PrimitiveRun> primitive_runs(const Character& character, const order
   return runs;
 }
 
-MaskSkin make_mask_skin(const Character& character, const std::vector<PrimitiveRun>& runs, const ordered_json& gltf) {
-  MaskSkin skin;
+std::string run_name(const PrimitiveRun& run, const ordered_json& gltf) {
+  const ordered_json& mesh = gltf["meshes"][run.mesh];
+  const std::string own = mesh.value("name", "meshes[" + std::to_string(run.mesh) + "]");
+  if (mesh["primitives"].size() < 2) return own;
+  const ordered_json& primitive = mesh["primitives"][run.primitive];
+  const std::string numbered = own + "[" + std::to_string(run.primitive) + "]";
+  if (!primitive.contains("material")) return numbered;
+  return gltf["materials"][primitive["material"].get<std::size_t>()].value("name", numbered);
+}
+
+LayeredSkin make_layered_skin(const Character& character, const std::vector<PrimitiveRun>& runs,
+                              const ordered_json& gltf) {
+  LayeredSkin skin;
   skin.rest = {character.source_positions, character.source_triangles};
   skin.welded = weld(character);
   Components pieces = connected_components(skin.welded);

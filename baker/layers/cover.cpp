@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "baker/mask/cover.h"
+#include "baker/layers/cover.h"
 
 #include <algorithm>
 #include <array>
@@ -31,7 +31,7 @@ constexpr double kRim = 1e-6;       // barycentric
 
 class Rays {
  public:
-  Rays(const MaskSkin& skin, const std::vector<char>& is_inverted)
+  Rays(const LayeredSkin& skin, const std::vector<char>& is_inverted)
       : skin_(skin), is_inverted_(is_inverted), query_(skin.rest, opaque(skin)) {}
 
   Index cover(Index t) const {
@@ -67,7 +67,7 @@ class Rays {
     bool meets_own = false;
   };
 
-  static std::vector<Index> opaque(const MaskSkin& skin) {
+  static std::vector<Index> opaque(const LayeredSkin& skin) {
     std::vector<Index> out;
     for (Index t = 0; t < skin.rest.triangles.size(); ++t) {
       if (skin.is_opaque[t] != 0) out.push_back(t);
@@ -96,7 +96,7 @@ class Rays {
     }
   }
 
-  const MaskSkin& skin_;
+  const LayeredSkin& skin_;
   const std::vector<char>& is_inverted_;
   SurfaceQuery query_;
 };
@@ -104,7 +104,7 @@ class Rays {
 // Finds triangles by their middles at rest.
 class Grid {
  public:
-  Grid(const MaskSkin& skin, double cell) : cell_(cell) {
+  Grid(const LayeredSkin& skin, double cell) : cell_(cell) {
     for (Index t = 0; t < skin.rest.triangles.size(); ++t) {
       middles_.push_back(triangle_centroid(skin.rest, t));
       directions_.push_back(triangle_cross(skin.rest, t).normalized());
@@ -141,7 +141,7 @@ class Grid {
 
 // Where two primitives, or two pieces of one, cover each other in places, the one that is below in less of the area is
 // not covered: a shirt that a belly has come through is not under the belly.
-void drop_wrong_order(const MaskSkin& skin, std::vector<Cover>& covers) {
+void drop_wrong_order(const LayeredSkin& skin, std::vector<Cover>& covers) {
   using Pair = std::array<Index, 2>;
   std::map<std::pair<bool, Pair>, double> areas;  // of the first below the second
   const auto key = [&](Index t) {
@@ -172,15 +172,19 @@ std::map<Index, double> weights_of(const SourceRig& rig, const Triangle& triangl
   return out;
 }
 
+double shared(const std::map<Index, double>& a, const std::map<Index, double>& b) {
+  double out = 0;
+  for (const auto& [bone, weight] : a) {
+    if (const auto found = b.find(bone); found != b.end()) out += std::min(weight, found->second);
+  }
+  return out;
+}
+
 // True if two triangles move alike: bones that move both, or the main bones are parent and child.
 bool move_together(const SourceRig& rig, const Triangle& a, const Triangle& b) {
   if (rig.weights.empty()) return true;
   const std::map<Index, double> of_a = weights_of(rig, a), of_b = weights_of(rig, b);
   if (of_a.empty() || of_b.empty()) return of_a.empty() && of_b.empty();
-  double shared = 0;
-  for (const auto& [bone, weight] : of_a) {
-    if (const auto found = of_b.find(bone); found != of_b.end()) shared += std::min(weight, found->second);
-  }
   const auto main = [&](const std::map<Index, double>& weights) {
     const auto most = std::max_element(weights.begin(), weights.end(),
                                        [](const auto& l, const auto& r) { return l.second < r.second; });
@@ -188,7 +192,7 @@ bool move_together(const SourceRig& rig, const Triangle& a, const Triangle& b) {
   };
   const int node_a = main(of_a), node_b = main(of_b);
   const auto parent = [&](int node) { return rig.nodes[static_cast<std::size_t>(node)].parent; };
-  return shared >= kSharedMin || node_a == node_b || parent(node_a) == node_b || parent(node_b) == node_a;
+  return shared(of_a, of_b) >= kSharedMin || node_a == node_b || parent(node_a) == node_b || parent(node_b) == node_a;
 }
 
 // Weights of the corners a, b, c at the point of the triangle that is closest to p.
@@ -210,7 +214,11 @@ Vec3 closest_weights(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
 
 }  // namespace
 
-std::vector<Cover> find_covers(const MaskSkin& skin, const std::vector<char>& is_inverted) {
+double shared_weight(const SourceRig& rig, const Triangle& a, const Triangle& b) {
+  return rig.weights.empty() ? 0 : shared(weights_of(rig, a), weights_of(rig, b));
+}
+
+std::vector<Cover> find_covers(const LayeredSkin& skin, const std::vector<char>& is_inverted) {
   std::vector<Cover> covers(skin.rest.triangles.size());
   if (std::find(skin.is_opaque.begin(), skin.is_opaque.end(), 1) == skin.is_opaque.end()) return covers;
   const Rays rays(skin, is_inverted);
@@ -239,9 +247,13 @@ std::vector<Cover> find_covers(const MaskSkin& skin, const std::vector<char>& is
   return covers;
 }
 
-PokeTest::PokeTest(const MaskSkin& skin, const std::vector<char>& is_inverted, const std::vector<Cover>& covers,
+PokeTest::PokeTest(const LayeredSkin& skin, const std::vector<char>& is_inverted, const std::vector<Cover>& covers,
                    const SourceRig& rig)
-    : skin_(skin), is_inverted_(is_inverted), near_(covers.size()), neighbours_(triangle_neighbours(skin.welded)) {
+    : skin_(skin),
+      is_inverted_(is_inverted),
+      covers_(covers),
+      near_(covers.size()),
+      neighbours_(triangle_neighbours(skin.welded)) {
   const Grid grid(skin, kNear * skin.height);
   const std::vector<Vec3> rest_normals = normals(skin.rest.positions);
   run_parallel(thread_count(), covers.size(), [&](std::size_t, std::size_t i) {
@@ -298,6 +310,20 @@ PokeTest::Height PokeTest::height(Index triangle, const Vec3& point, const std::
   out.distance = offset.norm();
   out.along = offset.dot(normal.normalized());
   return out;
+}
+
+double PokeTest::height_above(Index triangle, const std::vector<Vec3>& positions,
+                              const std::vector<Vec3>& normals) const {
+  const auto corner = [&](Index t, std::size_t k) -> const Vec3& { return positions[skin_.rest.triangles[t][k]]; };
+  const Vec3 point = (corner(triangle, 0) + corner(triangle, 1) + corner(triangle, 2)) / 3;
+  // Most skin lies right below the spot of its cover that it lay below at rest: the search is left out.
+  const Index cover = covers_[triangle].triangle;
+  const Vec3 &a = corner(cover, 0), &b = corner(cover, 1), &c = corner(cover, 2);
+  const Vec3 w = closest_weights(point, a, b, c), offset = point - (w[0] * a + w[1] * b + w[2] * c);
+  const Vec3 cross = (is_inverted_[skin_.piece[cover]] != 0 ? -1 : 1) * (b - a).cross(c - a);
+  if (-offset.dot(cross) > kAlong * offset.norm() * cross.norm()) return 0;
+  const Height found = height(triangle, point, positions, normals);
+  return found.is_above() ? found.distance : 0;
 }
 
 bool PokeTest::is_through(Index triangle, const std::vector<Vec3>& positions, const std::vector<Vec3>& normals) const {

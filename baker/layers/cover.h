@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "baker/mask/skin.h"
+#include "baker/layers/skin.h"
 
 namespace spherechain::baker {
 
@@ -15,17 +15,26 @@ struct Cover {
 };
 
 // The cover of each triangle. `is_inverted`: pieces whose triangles face inwards.
-std::vector<Cover> find_covers(const MaskSkin& skin, const std::vector<char>& is_inverted);
+std::vector<Cover> find_covers(const LayeredSkin& skin, const std::vector<char>& is_inverted);
 
-// Tells which covered triangles have come through their cover in a pose. Const calls may run in several threads. `skin`
-// and `is_inverted` must outlive it.
+// The weight of the bones that move both triangles, 0 to 1.
+double shared_weight(const SourceRig& rig, const Triangle& a, const Triangle& b);
+
+// Tells which covered triangles have come through their cover in a pose. Const calls may run in several threads.
+// `skin`, `is_inverted` and `covers` must outlive it.
 class PokeTest {
  public:
-  PokeTest(const MaskSkin& skin, const std::vector<char>& is_inverted, const std::vector<Cover>& covers,
+  PokeTest(const LayeredSkin& skin, const std::vector<char>& is_inverted, const std::vector<Cover>& covers,
            const SourceRig& rig);
 
   // Normals of the welded vertices in a pose, outwards. `positions`: of the source's vertices.
   std::vector<Vec3> normals(const std::vector<Vec3>& positions) const;
+
+  // False where heights tell nothing: the triangle has no cover, or one that moves in other ways.
+  bool is_tested(Index triangle) const { return !near_[triangle].empty(); }
+
+  // The distance of the triangle's middle from its cover; 0 where it is not above.
+  double height_above(Index triangle, const std::vector<Vec3>& positions, const std::vector<Vec3>& normals) const;
 
   // True if the triangle's middle or one of its corners is above its cover, or hardly below.
   bool is_through(Index triangle, const std::vector<Vec3>& positions, const std::vector<Vec3>& normals) const;
@@ -42,8 +51,9 @@ class PokeTest {
   Height height(Index triangle, const Vec3& point, const std::vector<Vec3>& positions,
                 const std::vector<Vec3>& normals) const;
 
-  const MaskSkin& skin_;
+  const LayeredSkin& skin_;
   const std::vector<char>& is_inverted_;
+  const std::vector<Cover>& covers_;
   std::vector<std::vector<Index>> near_;  // triangles of the cover near each covered triangle; empty: not tested
   std::vector<std::array<Index, 3>> neighbours_;
 };
