@@ -131,8 +131,8 @@ SPHERECHAIN_API sc_status sc_find_contacts(sc_body* body, const sc_body* other, 
 SPHERECHAIN_API sc_status sc_find_sphere_pairs(sc_body* body, const sc_query* query,
                                                sc_sphere_pairs* found) SC_NOEXCEPT;
 /* Finds the body parts that touch on the way from the last pose to this one. Matrices and vertices are blended
- * linearly. Finds every contact deeper than `tolerance`, and reports none that does not exist. Shallower contacts may
- * be missed. Times are accurate to the same distance. */
+ * linearly. Layers of one place are left out. Finds every contact deeper than `tolerance`, and reports none that does
+ * not exist. Shallower contacts may be missed. Times are accurate to the same distance. */
 SPHERECHAIN_API sc_status sc_find_steps(sc_body* body, const sc_body* other, const sc_query* query,
                                         sc_steps* found) SC_NOEXCEPT;
 /* The body parts below the ground; `other` is SC_FLOOR. */

@@ -11,6 +11,7 @@
 
 #include <cfloat>
 
+#include "runtime/src/base/pair_bits.h"
 #include "runtime/src/clusters/posed_clusters.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -202,6 +203,23 @@ struct BallProbe {
     return hn::Gt(squared, most);
   }
 };
+
+// Bit k: cluster first + k and `cluster` are layers of one place, or one of them is buried.
+HWY_INLINE std::uint64_t layers_of(const Surface& surface, std::size_t cluster, std::size_t first) {
+  if ((surface.buried.data[cluster / 64] >> cluster % 64 & 1) != 0) {
+    return ~std::uint64_t{0};
+  }
+  std::uint64_t bits = bits_at(surface.buried.data, surface.buried.size, first);
+  const auto word = static_cast<std::uint32_t>(first / 64);
+  const std::uint32_t end = surface.first_of_layers.data[cluster + 1];
+  for (std::uint32_t i = surface.first_of_layers.data[cluster]; i < end; ++i) {
+    const std::uint32_t at = surface.layer_words.data[i];
+    bits |= at == word                          ? surface.layer_bits.data[i] >> first % 64
+            : at == word + 1 && first % 64 != 0 ? surface.layer_bits.data[i] << (64 - first % 64)
+                                                : 0;
+  }
+  return bits;
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain

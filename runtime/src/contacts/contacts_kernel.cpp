@@ -172,26 +172,10 @@ HWY_NOINLINE void decide_clusters(const Bodies& bodies, ClusterPairs& list, Cont
   list.count = 0;
 }
 
-// Bit k: cluster first + k is buried, or is a layer of the same place as `cluster`.
-HWY_INLINE std::uint64_t layers_of(const Surface& surface, std::size_t cluster, std::size_t first) {
-  std::uint64_t bits = bits_at(surface.buried.data, surface.buried.size, first);
-  const std::uint32_t word = static_cast<std::uint32_t>(first / 64), end = surface.first_of_layers.data[cluster + 1];
-  for (std::uint32_t i = surface.first_of_layers.data[cluster]; i < end; ++i) {
-    const std::uint32_t at = surface.layer_words.data[i];
-    bits |= at == word                          ? surface.layer_bits.data[i] >> first % 64
-            : at == word + 1 && first % 64 != 0 ? surface.layer_bits.data[i] << (64 - first % 64)
-                                                : 0;
-  }
-  return bits;
-}
-
 // One cluster of a against the clusters [first, end) of b.
 HWY_INLINE void list_cluster(const Bodies& bodies, std::size_t cluster, std::size_t first, std::size_t end,
                              ClusterPairs& list, ContactCollector& collector) {
   constexpr Floats kFloats;
-  if (!bodies.a.layers && (bodies.a.surface->buried.data[cluster / 64] >> cluster % 64 & 1) != 0) {
-    return;
-  }
   const BoxProbe boxes(box_at(bodies.a.clusters, cluster));
   for (std::size_t j = first; j < end; j += kLanes) {
     auto apart = boxes.misses(bodies.b.clusters, j);

@@ -345,7 +345,9 @@ bool find_clusters(const MovingBodies& bodies, Span<const Pair> spheres, MovingC
         const std::size_t one = i + lowest_bit(of_a);
         const BoxProbe probe(box_at(bodies.a.clusters, one));
         for (std::size_t j = first_b; j < end_b; j += kLanes) {
-          for (std::uint64_t of_b = probe.touching(bodies.b.clusters, j, end_b - j); of_b != 0; of_b &= of_b - 1) {
+          const std::uint64_t layers = bodies.are_one ? layers_of(*bodies.a.start.surface, one, j) : 0;
+          for (std::uint64_t of_b = probe.touching(bodies.b.clusters, j, end_b - j) & ~layers; of_b != 0;
+               of_b &= of_b - 1) {
             const std::size_t other = j + lowest_bit(of_b);
             if (may_touch(bodies, one, other, stray) && !found.put(one, other)) {
               return false;
