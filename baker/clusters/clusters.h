@@ -51,8 +51,8 @@ struct ClusterMorph {
   Ball ball;
 };
 
-// A compact group of one sphere's triangles. Its balls have float centres and radii and contain their points to the
-// last bit.
+// A compact group of one sphere's triangles, of one piece of the skin. Its balls have float centres and radii and
+// contain their points to the last bit.
 struct Cluster {
   std::uint32_t sphere;
   std::vector<Index> triangles;                   // of Character::skin, in the order of their source triangles
@@ -87,8 +87,8 @@ struct Clusters {
 
 struct ClusterSettings {
   int triangles = 64;  // of a cluster, at most; 4 to 64
-  // 0: as few clusters as possible. 2, 4 or 8: each sphere is the root of a tree. A node with too many triangles for a
-  // cluster is divided into so many children; the lowest nodes are the clusters.
+  // 0: as few clusters as possible. 2, 4 or 8: each piece of a sphere's skin is the root of a tree. A node with too
+  // many triangles for a cluster is divided into so many children; the lowest nodes are the clusters.
   int branching = 0;
 };
 

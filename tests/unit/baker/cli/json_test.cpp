@@ -33,7 +33,7 @@ TEST_CASE("inspect --json has the contract's fields and agrees with itself") {
   const Run inspect = run(fmt::format("inspect {} --json", baked_files().asset.string()));
   REQUIRE(inspect.code == 0);
   const json asset = json::parse(inspect.out);
-  CHECK(asset["format_version"] == 5);
+  CHECK(asset["format_version"] == 6);
   CHECK(asset["writer"].get<std::string>().rfind("spherechain ", 0) == 0);
   CHECK(asset["source"]["file"] == "human.zae");
   CHECK(asset["source"]["sha256"].get<std::string>().size() == 64);

@@ -99,21 +99,31 @@ void report(const std::string& what, const Checked& checked, double height) {
   CHECK(checked.skinning < 1e-5 * height);
 }
 
+// The sizes of the clusters of each piece of the skin in each sphere; of none that hold triangles of two pieces.
+std::map<std::pair<std::uint32_t, Index>, std::vector<std::size_t>> sizes_by_piece(const Bake& bake) {
+  const std::vector<Index> piece_of = connected_components(bake.character.skin).of_triangle;
+  std::map<std::pair<std::uint32_t, Index>, std::vector<std::size_t>> out;
+  for (const Cluster& cluster : bake.clusters.clusters) {
+    const Index piece = piece_of[cluster.triangles.front()];
+    CHECK(std::ranges::all_of(cluster.triangles, [&](Index t) { return piece_of[t] == piece; }));
+    out[{cluster.sphere, piece}].push_back(cluster.triangles.size());
+  }
+  return out;
+}
+
 }  // namespace
 
-TEST_CASE("every triangle of the skin is in one cluster of its own sphere, of even size and no more than 64") {
+TEST_CASE("every triangle of the skin is in one cluster of its own sphere and piece, of even size and at most 64") {
   for (const Bake* bake : {&baked_human(), &baked_person()}) {
     std::vector<int> clusters_of_triangle(bake->character.skin.triangles.size(), 0);
-    std::map<std::uint32_t, std::vector<std::size_t>> sizes;
     for (const Cluster& cluster : bake->clusters.clusters) {
-      sizes[cluster.sphere].push_back(cluster.triangles.size());
       for (const Index t : cluster.triangles) {
         ++clusters_of_triangle[t];
         CHECK(bake->binding.sphere_of_triangle[t] == cluster.sphere);
       }
     }
     CHECK(std::ranges::all_of(clusters_of_triangle, [](int count) { return count == 1; }));
-    for (const auto& [sphere, of_sphere] : sizes) {
+    for (const auto& [sphere, of_sphere] : sizes_by_piece(*bake)) {
       const std::size_t all = std::accumulate(of_sphere.begin(), of_sphere.end(), std::size_t{0});
       CHECK(of_sphere.size() == (all + 63) / 64);
       CHECK(std::ranges::max(of_sphere) - std::ranges::min(of_sphere) <= 1);
@@ -348,10 +358,8 @@ TEST_CASE("clusters.branching is how many children a node of too many triangles 
     const Bake bake =
         rebake(baked_person(),
                make_settings("balanced", fmt::format(R"({{"clusters": {{"branching": {}}}}})", branching), "test"));
-    std::map<std::uint32_t, std::vector<std::size_t>> sizes;
-    for (const Cluster& cluster : bake.clusters.clusters) sizes[cluster.sphere].push_back(cluster.triangles.size());
     std::set<std::size_t> counts;
-    for (const auto& [sphere, of_sphere] : sizes) {
+    for (const auto& [piece, of_sphere] : sizes_by_piece(bake)) {
       const auto [least, most] = std::minmax_element(of_sphere.begin(), of_sphere.end());
       CHECK(*most <= 64);
       CHECK(*most - *least <= 1);
