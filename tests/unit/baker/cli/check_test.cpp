@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 
 #include "baker/check/file_hash.h"
 #include "baker/check/library.h"

@@ -53,8 +53,8 @@ TEST_CASE("bake writes the same bytes as the library, a report and a table, and 
   }
   std::set<std::string> stages;
   for (const json& stage : report["stages"]) stages.insert(stage["stage"].get<std::string>());
-  CHECK(stages ==
-        std::set<std::string>{"import", "roles", "fit", "chains", "bind", "rig", "clusters", "write", "calibrate"});
+  CHECK(stages == std::set<std::string>{"import", "roles", "fit", "chains", "bind", "rig", "clusters", "layers",
+                                        "write", "calibrate"});
 }
 
 TEST_CASE(

@@ -27,23 +27,27 @@ Shape both_of(const Shape& a, const Shape& b) {
   return out;
 }
 
+// At rest the coat is around the trunk.
+const TwoShapes& dressed() {
+  static const TwoShapes shapes(trunk(), coat(), 0);
+  return shapes;
+}
+
 }  // namespace
 
 TEST_CASE("a coat that slides on a trunk meets it only where layers are asked for") {
-  const TwoShapes shapes(trunk(), coat(), 0);
   const auto slid = shifted(1.2, 0.5, 0);
-  CHECK(shapes.ask(slid, {}, SC_SCOPE_APART).empty());
-  const std::vector<spherechain::Penetration> all = shapes.ask(slid, {}, SC_SCOPE_LAYERS);
+  CHECK(dressed().ask(slid, {}, SC_SCOPE_APART).empty());
+  const std::vector<spherechain::Penetration> all = dressed().ask(slid, {}, SC_SCOPE_LAYERS);
   REQUIRE(all.size() == 1);
   CHECK(all[0].kind == SC_CLASS_SHELL);
 }
 
 TEST_CASE("a coat that has moved far beyond its place on the trunk meets it, whatever is asked for") {
-  const TwoShapes shapes(trunk(), coat(), 0);
   const auto gone = shifted(3, 29, 0);
-  const std::vector<spherechain::Penetration> apart = shapes.ask(gone, {}, SC_SCOPE_APART);
+  const std::vector<spherechain::Penetration> apart = dressed().ask(gone, {}, SC_SCOPE_APART);
   REQUIRE(apart.size() == 1);
-  CHECK(apart[0].measures.depth == shapes.ask(gone, {}, SC_SCOPE_LAYERS)[0].measures.depth);
+  CHECK(apart[0].measures.depth == dressed().ask(gone, {}, SC_SCOPE_LAYERS)[0].measures.depth);
 }
 
 TEST_CASE("a hand that goes into a coat is found, and how deep, though there is a trunk below") {
