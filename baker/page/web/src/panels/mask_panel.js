@@ -5,7 +5,7 @@ import { HIDDEN_LAYER } from '../model/model.js';
 
 // The mask in numbers, the key to the layers' colours, and the hidden triangles of each mesh; a click shows a mesh alone.
 
-const NAMES = ['nothing covers it', 'covered, and stays: a clip shows it, or skin near it', 'hidden: another piece covers it, and no clip shows it'];
+const NAMES = ['nothing covers it', 'covered, and stays: a clip shows it or skin near it', 'hidden: covered, and no clip shows it'];
 
 export function fillMaskPanel(panel, store, model) {
   const { hidden, hidden_percent: triangles, area_percent: area } = model.mask;
@@ -37,6 +37,7 @@ export function fillMaskPanel(panel, store, model) {
   panel.append(
     h('p', { class: 'summary', id: 'mask-summary' }, `${plural(hidden, 'hidden triangle')} of ${layerOf.length.toLocaleString('en')} (${triangles.toFixed(1)} %), ${area.toFixed(1)} % of the area`),
     key,
+    h('p', { class: 'note' }, 'Skin that comes through its cloth is hidden, too.'),
     h('h3', {}, 'Hidden triangles by mesh'),
     h('ol', { class: 'pairs' }, rows),
     h('p', { class: 'note' }, 'A click shows a mesh alone. A second click shows all.'),
