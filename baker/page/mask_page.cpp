@@ -113,7 +113,9 @@ std::string mask_page(const Character& character, const LayeredSkin& skin, const
                       {"chains", ordered_json::array()}}},
                     {"radius", "detect"},
                     {"mask", mask_json(hidden)}};
-  if (!page.look.material_of.empty()) data["look"] = page_look(page.look);
+  const bool has_look = page.look.uvs.size() == character.source_positions.size() &&
+                        page.look.material_of.size() == character.source_triangles.size();
+  if (has_look) data["look"] = page_look(page.look);
   PageMotion motion(character, axes);
   add_frames(character, clips, motion, data, progress);
   data["mesh"] = page_mesh(motion.rest(), character.source_triangles, character.rig.weights, parts, {});
