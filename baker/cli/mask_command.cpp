@@ -6,6 +6,7 @@
 
 #include "baker/cli/commands.h"
 #include "baker/cli/console.h"
+#include "baker/cli/installed.h"
 #include "baker/cli/outputs.h"
 #include "baker/cli/progress.h"
 #include "baker/mask/clips.h"
@@ -13,21 +14,27 @@
 #include "baker/mask/raised_limbs.h"
 #include "baker/mask/write_mask.h"
 #include "baker/os/written_file.h"
+#include "baker/page/mask_page.h"
 
 namespace spherechain::baker {
 namespace {
 
 namespace fs = std::filesystem;
 
-void check_files(const MaskOptions& options, bool is_json) {
+void check_files(const MaskOptions& options, FileKind kind) {
   check_regular_file(options.input);
   const std::string& output = options.output;
-  if (is_json ? !has_ending(output, ".json") : !has_ending(output, ".glb") && !has_ending(output, ".vrm")) {
+  const bool is_named_right = kind == FileKind::kJson   ? has_ending(output, ".json")
+                              : kind == FileKind::kPage ? has_ending(output, ".html")
+                                                        : has_ending(output, ".glb") || has_ending(output, ".vrm");
+  if (!is_named_right) {
     throw Error(ExitCode::kUsage,
                 "-o: " + output +
                     (fs::is_directory(output)      ? " is a folder"
-                     : is_json                     ? " is written as JSON (name it .json)"
+                     : kind == FileKind::kJson     ? " is written as JSON (name it .json)"
+                     : kind == FileKind::kPage     ? " is written as a page (name it .html)"
                      : has_ending(output, ".json") ? " is written as a binary glTF (name it .glb, or take --as json)"
+                     : has_ending(output, ".html") ? " is written as a binary glTF (name it .glb, or take --as page)"
                                                    : " is written as a binary glTF (name it .glb or .vrm)"));
   }
   std::vector<CommandFile> inputs = with_source({}, "CHARACTER", options.input);
@@ -36,8 +43,7 @@ void check_files(const MaskOptions& options, bool is_json) {
     motion.motion = recording;
     inputs = with_motion(std::move(inputs), motion);
   }
-  check_outputs(inputs, {{"-o", options.output, is_json ? FileKind::kJson : FileKind::kGlb}},
-                options.force ? Force::kGiven : Force::kOffered);
+  check_outputs(inputs, {{"-o", options.output, kind}}, options.force ? Force::kGiven : Force::kOffered);
 }
 
 std::string percent_text(double part, double whole) {
@@ -62,11 +68,15 @@ std::string mask_text(const HiddenSkin& skin, const std::vector<HiddenMesh>& mes
 
 }  // namespace
 
-std::vector<std::string> mask_forms() { return {"triangles", "vertex-colour", "attribute", "json"}; }
+std::vector<std::string> mask_forms() { return {"triangles", "vertex-colour", "attribute", "json", "page"}; }
 
 ExitCode run_mask(const MaskOptions& options) {
-  const bool is_json = options.as == "json";
-  check_files(options, is_json);
+  const FileKind kind = options.as == "json"   ? FileKind::kJson
+                        : options.as == "page" ? FileKind::kPage
+                                               : FileKind::kGlb;
+  check_files(options, kind);
+  MaskPage page;
+  if (kind == FileKind::kPage) page.template_file = viewer_template().string();
   HiddenSkin hidden;
   std::vector<HiddenMesh> meshes;
   std::vector<std::string> clip_names, warnings;
@@ -94,8 +104,16 @@ ExitCode run_mask(const MaskOptions& options) {
                       limbs));
     }
     meshes = hidden_meshes(glb.json, runs, hidden);
-    if (is_json) {
+    if (kind == FileKind::kJson) {
       write_atomically(options.output, mask_json(meshes, hidden, clip_names));
+    } else if (kind == FileKind::kPage) {
+      page.title = fs::path(options.input).filename().string();
+      for (const PrimitiveRun& run : runs) page.mesh_names.push_back(run_name(run, glb.json));
+      import.look = true;
+      page.look = read_source(options.input, import).look;
+      write_atomically(options.output, mask_page(character, skin, clips, hidden, page, [&](int done, int all) {
+                         progress.show(fmt::format("page: frame {} of {}", done + 1, all));
+                       }));
     } else {
       write_mask(glb, options.input, runs, hidden,
                  options.as == "triangles"   ? MaskForm::kTriangles

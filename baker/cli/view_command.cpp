@@ -22,14 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path viewer_template() {
-  const fs::path page = installed_page("viewer.html");
-  if (!fs::is_regular_file(page)) {
-    throw Error(ExitCode::kFile, page.string() + ": the viewer's page is not installed (build spherechain with Node)");
-  }
-  return page;
-}
-
 // Files that the command reads for the two characters.
 std::vector<CommandFile> inputs_of(const ViewOptions& options, const std::string& with_source_file) {
   std::vector<CommandFile> inputs{{"ASSET", options.asset},

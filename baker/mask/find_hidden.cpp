@@ -141,6 +141,7 @@ HiddenSkin find_hidden(const Character& character, const LayeredSkin& skin, cons
   for (std::size_t t = 0; t < is_seen.size(); ++t) {
     const double area = triangle_area(skin.rest, t);
     out.area += area;
+    out.is_covered.push_back(covers[t].triangle != kNoIndex ? 1 : 0);
     is_seen[t] = rest.seen[t] > 0;
     if (is_seen[t] != 0 && pokes.is_through(static_cast<Index>(t), skin.rest.positions, normals)) is_seen[t] = 0;
     if (static_cast<double>(shown.pixels[t]) * pixel_area > kSeenShare * area * views) is_seen[t] = 1;

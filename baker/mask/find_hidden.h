@@ -11,9 +11,10 @@ namespace spherechain::baker {
 
 // The skin that is hidden at rest and in all clips.
 struct HiddenSkin {
-  std::vector<char> is_hidden;  // of the source's triangles
-  std::size_t hidden = 0;       // triangles
-  std::size_t near_edge = 0;    // triangles that are never seen, and stay because of the margin
+  std::vector<char> is_hidden;   // of the source's triangles
+  std::vector<char> is_covered;  // at rest another piece lies over the triangle
+  std::size_t hidden = 0;        // triangles
+  std::size_t near_edge = 0;     // triangles that are never seen, and stay because of the margin
   double hidden_area = 0, area = 0;
   double poke_area = 0, poke_hidden_area = 0;  // that shows through clothes, over all frames; of it the hidden
   int frames = 0;

@@ -507,6 +507,37 @@ test('a page without WebGL says so and still lists contacts', async () => {
   await opened.close();
 });
 
+test('the page of a mask has layers in colours, a switch for hidden triangles, and their number', async () => {
+  const all = pages.inspect.source.triangles;
+  const hidden = Math.floor(all / 3);
+  const layers = Uint8Array.from({ length: all }, (_, t) => (t < hidden ? 2 : t < 2 * hidden ? 1 : 0));
+  const opened = await shown(pages.variant('mask.html', (data) => {
+    delete data.spheres;
+    Object.assign(data.inspect, { spheres: [], chains: [], regions: [] });
+    Object.assign(data, { report: null, edits: null, rig: null });
+    data.frames = { count: 0, fps: 30 };
+    data.mask = { hidden, hidden_percent: 33.3, area_percent: 25.26, layers: base64(layers) };
+  }, 'rest.html'));
+  const { page } = opened;
+  assert.equal(
+    await page.locator('#mask-summary').innerText(),
+    `${hidden.toLocaleString('en')} hidden triangles of ${all.toLocaleString('en')} (33.3 %), 25.3 % of the area`,
+  );
+  const coloured = await picture(page);
+  await click(page, 'show-masked');
+  assert.ok(compare(coloured, await picture(page)) > 0.001, 'hidden triangles are gone');
+  await press(page, 'k');
+  assert.equal(compare(coloured, await picture(page)), 0);
+  await click(page, 'show-layers');
+  assert.ok(compare(coloured, await picture(page)) > 0.01, 'the layers have no colours');
+  await press(page, '0');
+  const row = page.locator('[data-mesh]').first();
+  await row.click();
+  assert.equal(await row.getAttribute('aria-pressed'), 'true');
+  assert.equal(await page.locator('.part[aria-pressed=true]').count(), 1);
+  silent(opened);
+});
+
 const still = (data) => {
   data.frames = { count: 0, fps: 30 };
   data.motion = {};

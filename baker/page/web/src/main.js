@@ -1,5 +1,6 @@
 import { h } from './base/dom.js';
 import { readModel } from './model/model.js';
+import { decodePictures } from './model/pictures.js';
 import { start } from './viewer.js';
 
 const data = JSON.parse(document.getElementById('spherechain-data').textContent);
@@ -15,8 +16,9 @@ function openLinked(model, store) {
 
 if (data) {
   const model = readModel(data);
-  const { store } = start(model);
-  addEventListener('hashchange', () => openLinked(model, store));
-  openLinked(model, store);
-}
-else document.body.replaceChildren(h('p', { class: 'template' }, 'This is the template of `spherechain view`: it has no character in it yet.'));
+  decodePictures(model).then(() => {
+    const { store } = start(model);
+    addEventListener('hashchange', () => openLinked(model, store));
+    openLinked(model, store);
+  });
+} else document.body.replaceChildren(h('p', { class: 'template' }, 'This is the template of `spherechain view`: it has no character in it yet.'));

@@ -12,6 +12,7 @@ import { css, h } from './base/dom.js';
 import { dress } from './scene/dress.js';
 import { createEditor } from './editor/editor.js';
 import { bindKeys } from './panels/keys.js';
+import { fillMaskPanel } from './panels/mask_panel.js';
 import { drawOverlay } from './scene/overlay.js';
 import { followPointer } from './scene/pointer.js';
 import { addPosing } from './editor/posing.js';
@@ -83,6 +84,8 @@ const shown = {
   skin: true,
   skinOpacity: 1,
   look: true, // its base colours
+  layers: false, // of a mask, in their colours
+  masked: false, // without the triangles that a mask hides
   paint: true, // on the skin: contacts, their numbers and ways out
   hiddenContacts: true,
   follow: true,
@@ -141,7 +144,7 @@ export function start(model, listed = []) {
   document.title = `${model.title} · spherechain`;
   $('title').textContent = model.title;
   // Where spheres are no method to study, the skin shows through them.
-  const startState = { ...shown, radius: model.radius, ...(model.hasMethod ? {} : { sphereOpacity: 0.4 }) };
+  const startState = { ...shown, radius: model.radius, ...(model.hasMethod ? {} : { sphereOpacity: 0.4 }), layers: model.mask !== null };
   const theme = matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
   const store = createStore({ ...startState, frame: model.start, playing: false, theme, pose: 0, joint: null, editing: false });
   const toggleTheme = bindTheme(store);
@@ -174,7 +177,11 @@ export function start(model, listed = []) {
   if (model.change) addOver($('reset'), store);
   fillClips($('clip'), store, model);
   fillControls($('controls'), store, model);
-  const deepest = fillContactPanel($('contacts'), store, model, flyToContact);
+  const deepest = model.mask ? null : fillContactPanel($('contacts'), store, model, flyToContact);
+  if (model.mask) {
+    $('tab-contacts').textContent = 'Mask';
+    fillMaskPanel($('contacts'), store, model);
+  }
   fillSpherePanel($('spheres'), store, model, flyToSpheres);
   fillSphereCard($('sphere'), store, model);
   const timeline = fillTimeline($('timeline'), store, model);
@@ -193,7 +200,7 @@ export function start(model, listed = []) {
   $('help-button').addEventListener('click', () => $('help').showModal());
   $('licences').textContent = LICENCES;
   const chains = model.sets.filter((set) => set.kind === 'chain').map((set) => set.name);
-  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains, hasMethod: model.hasMethod, hasChange: model.change !== null, hasColliders: model.colliders !== null, posing: layers.posing, editor: layers.editor, listed });
+  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains, hasMethod: model.hasMethod, hasChange: model.change !== null, hasColliders: model.colliders !== null, hasMask: model.mask !== null, posing: layers.posing, editor: layers.editor, listed });
   runPlayback(store, model);
 
   window.spherechainViewer = Object.freeze({

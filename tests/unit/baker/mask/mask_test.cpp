@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
@@ -244,6 +245,22 @@ TEST_CASE("mask: a mask is 0 at vertices whose triangles are all hidden, and no 
   }
 }
 
+TEST_CASE("mask: the page has as many hidden triangles as the JSON, and all frames") {
+  const auto viewer =
+      std::filesystem::path(SPHERECHAIN_TOOL).parent_path().parent_path() / "share/spherechain/viewer.html";
+  if (!std::filesystem::exists(viewer)) return;  // the build has no Node
+  const Glb glb = rod_in_tube(0.1);
+  const std::string html = mask(glb, "--as page", "mask.html").bytes, open = R"(type="application/json">)";
+  const std::size_t at = html.find(open) + open.size();
+  const json page = json::parse(html.substr(at, html.find('<', at) - at)), found = mask_as_json(glb);
+  const std::size_t hidden = found["meshes"][0]["hidden"].size();
+  CHECK(hidden > 0);
+  CHECK(page["mask"]["hidden"] == hidden);
+  for (const char* key : {"hidden_percent", "area_percent"}) CHECK(page["mask"][key] == found[key]);
+  CHECK(page["parts"] == json{"rod", "tube"});
+  CHECK(page["clips"] == json{{{"name", "rise"}, {"first", 0}, {"count", 31}, {"own_count", 31}}});
+}
+
 TEST_CASE("mask: a character without clips, or without covered skin, is refused, and nothing is written") {
   const TemporaryFolder folder;
   const auto refuse = [&](const json& glb_json, Glb glb, int code, const std::vector<std::string>& parts,
@@ -266,6 +283,7 @@ TEST_CASE("mask: a character without clips, or without covered skin, is refused,
   refuse(wide.json, wide, 3, {"rod.glb", "no other piece covers it"}, "out.glb");
   refuse(glb.json, glb, 2, {"out.fbx", "name it .glb or .vrm"}, "out.fbx");
   refuse(glb.json, glb, 2, {"out.json", "--as json"}, "out.json");
+  refuse(glb.json, glb, 2, {"out.html", "--as page"}, "out.html");
   folder.write("mine.glb", "precious");
   refuse(glb.json, glb, 3, {"mine.glb", "--force replaces it"}, "mine.glb");
   CHECK(tool::contents(folder.path / "mine.glb") == "precious");

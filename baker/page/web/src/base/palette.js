@@ -8,6 +8,7 @@ export const COLLIDER = '#2f7fd6';
 export const CLAY = '#c9c2b6';
 export const GHOST = '#6d7278';
 export const POINTED = '#f0e442';
+export const LAYERS = ['#c9c2b6', '#e69f00', '#0072b2']; // of a mask: uncovered, covered, hidden
 export const EDITED = { changed: '#e69f00', added: '#009e73', deleted: '#d41f2c' };
 // Paul Tol's bright palette: lines over the colours above, recognised by their names at the ends too.
 export const CHAINS = ['#4477aa', '#ee6677', '#228833', '#ccbb44', '#66ccee', '#aa3377'];

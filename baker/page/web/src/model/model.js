@@ -4,6 +4,8 @@ import { decode, frameLists } from './frame_lists.js';
 
 // The page's data (see ../README.md) as the other modules use it. Lengths are in the source's units.
 
+export const HIDDEN_LAYER = 2; // of `mask`
+
 const words = (name) => name.replaceAll('_', ' ');
 
 // zeta3 -> ζ3, as the paper writes it.
@@ -133,6 +135,7 @@ export function readModel(data) {
     spheres,
     sets: readSets(data.inspect, spheres),
     kinds,
+    mask: data.mask ?? null, // the page of `mask`: how much skin is hidden
     change: data.change ?? null, // the page shows one character before and after a change: where the latter begins
     mesh: {
       changed: data.change ?? null,
@@ -140,6 +143,7 @@ export function readModel(data) {
       triangles: decode(mesh.triangles, Uint32Array),
       partOf,
       sphereOf,
+      layerOf: data.mask ? decode(data.mask.layers, Uint8Array) : null,
       height: data.axes.height,
       unitsPerMm: 1 / (1000 * (data.inspect.source.metres_per_unit || 1)),
       influences: mesh.influences ?? 0,

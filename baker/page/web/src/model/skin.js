@@ -1,7 +1,7 @@
 // Morphs and linear blend skinning of the mesh on the CPU, with smooth normals.
 //
 // Sources split vertices at seams and faces. Here a vertex is what moves alike and belongs to one zone (a sphere's triangles of
-// one body part, of one material), so that zones have sharp borders; normals are shared by all that are in one place at rest.
+// one body part, of one material and layer), so that zones have sharp borders; normals are shared by all that are in one place at rest.
 
 const sameAs = (map, key) => {
   let id = map.get(key);
@@ -14,7 +14,7 @@ export class Skin {
     this.mesh = mesh;
     this.motion = motion;
     this.frame = -1;
-    const { positions, triangles, partOf, sphereOf, influences, joints, weights } = mesh;
+    const { positions, triangles, partOf, sphereOf, layerOf, influences, joints, weights } = mesh;
     this.isLaidOver = false;
     const isBefore = (triangle) => mesh.changed !== null && triangle < mesh.changed.triangle;
     const before = []; // of each vertex
@@ -41,7 +41,8 @@ export class Skin {
         moverOf[v] = sameAs(movers, ownPath[v] ? v : `${placeOf[v]};${skin}${uv}`);
       }
       const triangle = Math.floor(corner / 3);
-      const z = sameAs(zones, (sphereOf[triangle] * 256 + partOf[triangle]) * 65536 + (look?.of[triangle] ?? 0));
+      const layer = layerOf?.[triangle] ?? 0;
+      const z = sameAs(zones, ((layer * 65536 + sphereOf[triangle]) * 256 + partOf[triangle]) * 65536 + (look?.of[triangle] ?? 0));
       const r = sameAs(vertices, moverOf[v] * 65536 + z);
       if (r === source.length) {
         source.push(v);
@@ -57,7 +58,8 @@ export class Skin {
     this.before = Uint8Array.from(before);
     this.zones = [...zones.keys()].map((key, z) => ({
       isBefore: before[zone.indexOf(z)] === 1,
-      sphere: Math.floor(key / 16777216),
+      layer: Math.floor(key / 2 ** 40),
+      sphere: Math.floor(key / 2 ** 24) % 65536,
       part: Math.floor(key / 65536) % 256,
       material: look?.materials[key % 65536] ?? null,
     }));

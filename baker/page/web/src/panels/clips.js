@@ -14,7 +14,8 @@ export function fillClips(box, store, model) {
     return frames;
   };
   const names = withoutCommonStart(clips.map(({ name }) => name));
-  const option = (clip, i) => h('option', { value: i, title: clip.name }, `${names[i]} · skin touches in ${touching(clip)} of ${clip.count} frames`);
+  const note = (clip) => (model.mask ? '' : ` · skin touches in ${touching(clip)} of ${clip.count} frames`);
+  const option = (clip, i) => h('option', { value: i, title: clip.name }, names[i] + note(clip));
   const choose = () => store.set({ frame: clips[select.value].first, contact: null });
   const select = h('select', { id: 'clips', 'aria-label': 'Clip', onchange: choose }, clips.map(option));
   box.append(select);

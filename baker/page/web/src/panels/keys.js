@@ -2,7 +2,7 @@ import { h } from '../base/dom.js';
 
 // Keyboard shortcuts, and the page that lists them. `listed`: labels and texts of keys that another part of the page binds.
 
-export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, deepest, chains, hasMethod, hasChange, hasColliders, posing, editor, listed }) {
+export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, deepest, chains, hasMethod, hasChange, hasColliders, hasMask, posing, editor, listed }) {
   const flip = (key) => () => store.set({ [key]: !store.state[key] });
   const method = (action) => () => store.state.method && action();
   const allChains = () => store.set({ sets: new Set(chains.every((name) => store.state.sets.has(name)) ? [] : chains) });
@@ -14,13 +14,21 @@ export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, dee
     ['N', 'n', 'Method: numbers of spheres', method(flip('numbers'))],
     ['C', 'c', 'Method: all chains', method(allChains)],
   ];
+  const contactKeys = [
+    ['R', 'r', 'All paint: contacts, numbers, arrows', flip('paint')],
+    ['H', 'h', 'Contacts behind the skin', flip('hiddenContacts')],
+  ];
+  const maskKeys = [
+    ['L', 'l', 'Layers in colours', flip('layers')],
+    ['K', 'k', "Hide the mask's triangles", flip('masked')],
+  ];
   const keys = [
     ['Space', ' ', 'Play or pause', flip('playing')],
     ['←', 'ArrowLeft', 'Previous frame', () => timeline.step(-1)],
     ['→', 'ArrowRight', 'Next frame', () => timeline.step(1)],
     ['Home', 'Home', 'First frame', () => timeline.step(-Infinity)],
     ['End', 'End', 'Last frame', () => timeline.step(Infinity)],
-    ['D', 'd', 'Deepest frame of the clip', deepest],
+    ...(hasMask ? [] : [['D', 'd', 'Deepest frame of the clip', deepest]]),
     ...(hasChange ? [['O', 'o', 'Before and after: beside each other, or the old pose as a ghost', flip('over')]] : []),
     ['1', '1', 'View from the front', () => stage?.view('front')],
     ['2', '2', 'View from the side', () => stage?.view('side')],
@@ -29,10 +37,9 @@ export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, dee
     ['0', '0', 'Reset', reset],
     ['S', 's', 'Skin', flip('skin')],
     ['X', 'x', 'Textures', flip('look')],
-    ['R', 'r', 'All paint: contacts, numbers, arrows', flip('paint')],
-    ['H', 'h', 'Contacts behind the skin', flip('hiddenContacts')],
+    ...(hasMask ? maskKeys : contactKeys),
     ['F', 'f', 'Hold the character in place', flip('follow')],
-    ['B', 'b', 'Spheres', () => store.showSpheres(!store.state.spheres)],
+    ...(hasMask ? [] : [['B', 'b', 'Spheres', () => store.showSpheres(!store.state.spheres)]]),
     ...(hasColliders ? [['V', 'v', 'Colliders', flip('colliders')]] : []),
     ...(posing?.keys ?? []),
     ...(editor?.keys ?? []),

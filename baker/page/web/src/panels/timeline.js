@@ -120,8 +120,8 @@ export function fillTimeline(panel, store, model) {
     const contacts = model.contacts.now(frame);
     const touching = contacts.length;
     const number = model.number(frame);
-    const text = touching > 0 ? plural(touching, 'contact') : 'no contact';
-    input.setAttribute('aria-valuetext', `${clip.name}, frame ${number}, ${text}`);
+    const text = model.mask ? '' : touching > 0 ? plural(touching, 'contact') : 'no contact';
+    input.setAttribute('aria-valuetext', [clip.name, `frame ${number}`, text].filter(Boolean).join(', '));
     readout.replaceChildren(
       last === 0 ? h('b', {}, 'One frame') : h('span', {}, 'frame ', h('b', {}, `${number}`), ` / ${clip.own_count - 1}`),
       h('span', {}, `${model.seconds(frame).toFixed(2)} s`),

@@ -1,5 +1,6 @@
 import { css } from '../base/dom.js';
-import { CLAY, CONTACT, FALSE_ALARM, GHOST, POINTED, regionColour, SPHERE, tone } from '../base/palette.js';
+import { CLAY, CONTACT, FALSE_ALARM, GHOST, LAYERS, POINTED, regionColour, SPHERE, tone } from '../base/palette.js';
+import { HIDDEN_LAYER } from '../model/model.js';
 import { looks } from './skin_layer.js';
 
 function dressSkin(model, state, skinLayer) {
@@ -7,12 +8,12 @@ function dressSkin(model, state, skinLayer) {
   skinLayer.setOpacity(state.skinOpacity);
   skinLayer.skin.layOver(state.over);
   if (!state.editing) skinLayer.pose(state.frame); // else it stands at rest
-  const plain = state.regions || state.patches || !state.look;
+  const plain = state.regions || state.patches || state.layers || !state.look;
   skinLayer.uniforms.pictured.value = plain ? 0 : 1;
-  skinLayer.skin.zones.forEach(({ sphere, part, material, isBefore }, zone) => {
+  skinLayer.skin.zones.forEach(({ layer, sphere, part, material, isBefore }, zone) => {
     const region = model.spheres[sphere]?.region ?? -1;
-    const base = state.regions || state.patches ? regionColour(region) : (!plain && material?.colour) || CLAY;
-    if (state.hiddenParts.has(part)) skinLayer.setLook(zone, base, looks.HIDDEN);
+    const base = state.layers ? LAYERS[layer] : state.regions || state.patches ? regionColour(region) : (!plain && material?.colour) || CLAY;
+    if (state.hiddenParts.has(part) || (state.masked && layer === HIDDEN_LAYER)) skinLayer.setLook(zone, base, looks.HIDDEN);
     else if (state.over && isBefore) skinLayer.setLook(zone, GHOST, looks.GHOST);
     else if (state.method && sphere === state.pointed) skinLayer.setLook(zone, POINTED, looks.POINTED);
     else skinLayer.setLook(zone, state.patches ? tone(base, sphere) : base, looks.PLAIN);
