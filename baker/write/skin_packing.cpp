@@ -230,7 +230,7 @@ flatbuffers::Offset<schema::Skin> create_skin(flatbuffers::FlatBufferBuilder& bu
   const Runs runs = runs_of(character, clusters, parts, layers);
   const Groups groups = group_clusters(clusters.clusters, !bones.bones.empty());
   const PackedHulls hulls = hulls_of(clusters);
-  // Of nothing that is known yet: as many numbers as the runtime expects.
+  // Where nothing is known yet, there are as many zeros as the runtime expects numbers.
   const auto or_zeros = [](const auto& numbers, std::size_t count) {
     return numbers.empty() ? std::decay_t<decltype(numbers)>(count, 0) : numbers;
   };
