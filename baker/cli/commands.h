@@ -104,6 +104,7 @@ struct MaskOptions {
   std::string input, output, as = "triangles", character;
   std::vector<std::string> motions;
   double margin = 0.3;  // % of the height
+  int random_poses = 0;
   bool force = false;
 };
 ExitCode run_mask(const MaskOptions& options);

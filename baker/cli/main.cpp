@@ -289,6 +289,10 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0.0, 10.0))
       ->check(refuse_nan)
       ->capture_default_str();
+  mask_command
+      ->add_option("--random-poses", mask.random_poses, "Look at so many random poses within the clips' limits, too")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
   mask_command->add_option("--as", mask.as, "Without the hidden triangles, or with a mask")
       ->check(CLI::IsMember(mask_forms()))
       ->capture_default_str();

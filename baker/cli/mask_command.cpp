@@ -51,12 +51,13 @@ std::string percent_text(double part, double whole) {
 }
 
 std::string mask_text(const HiddenSkin& skin, const std::vector<HiddenMesh>& meshes, std::size_t clips,
-                      double margin_percent) {
+                      int random_poses, double margin_percent) {
   std::string out = fmt::format(
-      "{} frames of {} clip{}\n"
+      "{} frames of {} clip{}{}\n"
       "hidden    {} of {} triangles ({}), {} of the area\n"
       "near edge {} triangles are never seen, and stay: within {:.3g} % of the height of skin that is seen\n",
-      skin.frames, clips, clips == 1 ? "" : "s", skin.hidden, skin.is_hidden.size(),
+      skin.frames - random_poses, clips, clips == 1 ? "" : "s",
+      random_poses > 0 ? fmt::format(", {} random poses", random_poses) : "", skin.hidden, skin.is_hidden.size(),
       percent_text(static_cast<double>(skin.hidden), static_cast<double>(skin.is_hidden.size())),
       percent_text(skin.hidden_area, skin.area), skin.near_edge, margin_percent);
   for (const HiddenMesh& mesh : meshes) {
@@ -92,7 +93,7 @@ ExitCode run_mask(const MaskOptions& options) {
     const std::vector<Clip> clips = clips_for_mask(character, options.input, import, options.motions,
                                                    [&](const std::string& doing) { progress.show(doing); });
     for (const Clip& clip : clips) clip_names.push_back(clip.name);
-    hidden = find_hidden(character, skin, clips, options.margin / 100,
+    hidden = find_hidden(character, skin, clips, options.random_poses, options.margin / 100,
                          [&](int done, int all) { progress.show(fmt::format("frame {} of {}", done, all)); });
     if (hidden.hidden == 0) {
       throw Error(ExitCode::kFile, options.input + ": all of its skin is seen, or no other piece covers it");
@@ -123,7 +124,8 @@ ExitCode run_mask(const MaskOptions& options) {
     }
   }
   for (const std::string& warning : warnings) say(stderr, "spherechain: warning: {}: {}\n", options.input, warning);
-  say("{}wrote {}\n", mask_text(hidden, meshes, clip_names.size(), options.margin), options.output);
+  say("{}wrote {}\n", mask_text(hidden, meshes, clip_names.size(), options.random_poses, options.margin),
+      options.output);
   return ExitCode::kDone;
 }
 

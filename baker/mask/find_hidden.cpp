@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include "baker/calibrate/random_poses.h"
 #include "baker/layers/poke_finder.h"
 #include "baker/layers/rest_view.h"
 #include "baker/layers/views.h"
@@ -16,24 +17,37 @@ namespace spherechain::baker {
 namespace {
 
 constexpr int kFramesMax = 45;  // of a clip
+constexpr std::uint64_t kSeed = 1;
 constexpr double kFps = 30;
 constexpr double kPixel = 1.0 / 400;      // of the height
 constexpr double kRestPixel = 1.0 / 800;  // at rest no pixel may change
 constexpr std::size_t kRestTurns = 8;     // of the views
 constexpr double kSeenShare = 2e-4;       // of a triangle's area, on average over frames and views: less is not seen
 
-struct FrameOfClip {
+// A moment of a clip; without one, a pose of its own.
+struct Frame {
   const Clip* clip;
   double seconds;
+  Deformation pose;
 };
 
-std::vector<FrameOfClip> frames_of(const std::vector<Clip>& clips) {
-  std::vector<FrameOfClip> out;
+std::vector<Frame> frames_of(const std::vector<Clip>& clips) {
+  std::vector<Frame> out;
   for (const Clip& clip : clips) {
     const int count = std::min(frames_in(clip.duration, kFps), kFramesMax);
-    for (int f = 0; f < count; ++f) out.push_back({&clip, count > 1 ? clip.duration * f / (count - 1) : 0});
+    for (int f = 0; f < count; ++f) out.push_back({&clip, count > 1 ? clip.duration * f / (count - 1) : 0, {}});
   }
   return out;
+}
+
+// Draws poses within the limits of the clips: moments mixed from limb to limb, and joints turned at random.
+void add_random_poses(const Character& character, int count, std::vector<Frame>& frames) {
+  const RandomPoses poses(character, {});
+  Random random(kSeed);
+  for (int i = 0; poses.any() && i < count; ++i) {
+    RandomPoses::Pose pose = poses.next(random, 1 + i % 2, 0);
+    frames.push_back({nullptr, 0, {std::move(pose.bones), std::move(pose.morphs), {}}});
+  }
 }
 
 // The pixels and the poke-through of each triangle, summed over all frames.
@@ -43,7 +57,7 @@ struct Shown {
 };
 
 Shown look_at_frames(const Character& character, const LayeredSkin& skin, const PokeTest& pokes,
-                     const PokeFinder& finder, const std::vector<FrameOfClip>& frames,
+                     const PokeFinder& finder, const std::vector<Frame>& frames,
                      const std::function<void(int, int)>& progress) {
   const std::size_t threads = thread_count();
   std::vector<SeenPixels> lenses(threads, SeenPixels(skin, kPixel * skin.height));
@@ -52,7 +66,8 @@ Shown look_at_frames(const Character& character, const LayeredSkin& skin, const 
   std::mutex mutex;
   int done = 0;
   run_parallel(threads, frames.size(), [&](std::size_t thread, std::size_t f) {
-    const Deformation pose = sample(character.rig, *frames[f].clip, frames[f].seconds);
+    const Frame& frame = frames[f];
+    const Deformation pose = frame.clip == nullptr ? frame.pose : sample(character.rig, *frame.clip, frame.seconds);
     const std::vector<Vec3> positions =
         deform(morph(skin.rest.positions, character.rig.morphs, pose.morphs), character.rig.weights, pose.bones);
     SeenPixels& lens = lenses[thread];
@@ -126,11 +141,12 @@ std::size_t keep_edges(const LayeredSkin& skin, double margin, std::vector<char>
 }  // namespace
 
 HiddenSkin find_hidden(const Character& character, const LayeredSkin& skin, const std::vector<Clip>& clips,
-                       double margin, const std::function<void(int, int)>& progress) {
+                       int random_poses, double margin, const std::function<void(int, int)>& progress) {
   const RestView rest = look_at_rest(skin, kRestTurns, kRestPixel);
   const std::vector<Cover> covers = find_covers(skin, rest.is_inverted);
   const PokeTest pokes(skin, rest.is_inverted, covers, character.rig);
-  const std::vector<FrameOfClip> frames = frames_of(clips);
+  std::vector<Frame> frames = frames_of(clips);
+  add_random_poses(character, random_poses, frames);
   const PokeFinder finder(skin, rest, covers, pokes, character.rig);
   const Shown shown = look_at_frames(character, skin, pokes, finder, frames, progress);
   const double views = static_cast<double>(frames.size() * view_directions(skin.up, 0).size());

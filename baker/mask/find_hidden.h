@@ -22,8 +22,9 @@ struct HiddenSkin {
 
 // Finds triangles that are covered by another piece of the skin and seen in no clip, in no view. Skin that comes
 // through its cover counts as hidden. Triangles stay that lie within `margin`, a share of the height, of skin of their
-// piece that is seen. `clips` move the nodes of the character's rig. `progress` gets frames done, and all.
+// piece that is seen. `clips` move the nodes of the character's rig. So many `random_poses` within the clips' limits
+// are looked at, too. `progress` gets frames done, and all.
 HiddenSkin find_hidden(const Character& character, const LayeredSkin& skin, const std::vector<Clip>& clips,
-                       double margin, const std::function<void(int, int)>& progress);
+                       int random_poses, double margin, const std::function<void(int, int)>& progress);
 
 }  // namespace spherechain::baker
