@@ -56,7 +56,7 @@ void call_filter(const Asset& asset) {
   filter.ignored_words = ignored.size();
   expect(sc_reset_filter(&asset, &filter) == SC_OK, "reset filter");
   expect(sc_ignore_pair(&asset, &filter, 0, 1, 1) == SC_OK, "ignore pair");
-  expect(sc_ignore_parts(&asset, &filter, 0, 1, 1) == SC_OK, "ignore regions");
+  expect(sc_ignore_parts(&asset, &filter, 0, 1, 1) == SC_OK, "ignore parts");
   expect(sc_part_words(&asset) > 0, "part words");
 }
 
