@@ -33,15 +33,29 @@ std::string counted(int count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
-// "hero.glb walk  poke-through: 3 spots, worst 12 cm2 of body through shirt at abdomen, frames 40-65"
+// A line for each two pieces, the largest spot first:
+// "hero.glb walk  poke-through: 3 spots of body through shirt, worst 12 cm2 at abdomen, frames 40-65"
 std::string pokes_text(const EvaluatedClip& clip) {
-  if (clip.pokes.empty()) return {};
-  const PokeEvent& worst = clip.pokes.front().event;
-  const std::string frames = worst.from == worst.to ? "frame " + frame_text(worst.from)
-                                                    : "frames " + frame_text(worst.from) + "-" + frame_text(worst.to);
-  return fmt::format("{}  poke-through: {}, worst {:.0f} cm2 of {}, {}\n", clip_text(clip),
-                     counted(static_cast<int>(clip.pokes.size()), "spot", "spots"), worst.area_cm2, poke_text(worst),
-                     frames);
+  std::vector<std::pair<const PokeEvent*, int>> pairs;  // the largest, and how many there are
+  for (const EvaluatedPoke& poke : clip.pokes) {
+    const auto same =
+        std::ranges::find_if(pairs, [&](const auto& of) { return of.first->pieces == poke.event.pieces; });
+    if (same == pairs.end()) {
+      pairs.emplace_back(&poke.event, 1);
+    } else {
+      ++same->second;
+    }
+  }
+  std::string out;
+  for (const auto& [worst, count] : pairs) {
+    const std::string frames = worst->from == worst->to
+                                   ? "frame " + frame_text(worst->from)
+                                   : "frames " + frame_text(worst->from) + "-" + frame_text(worst->to);
+    out += fmt::format("{}  poke-through: {} of {} through {}, worst {:.0f} cm2{}, {}\n", clip_text(clip),
+                       counted(count, "spot", "spots"), worst->pieces[0], worst->pieces[1], worst->area_cm2,
+                       worst->part.empty() ? "" : " at " + worst->part, frames);
+  }
+  return out;
 }
 
 std::string summary_text(const Summary& s, std::size_t tickets) {
@@ -63,6 +77,7 @@ std::string summary_text(const Summary& s, std::size_t tickets) {
   beside(SC_CLASS_FOLD, "fold", "folds");
   beside(SC_CLASS_SHELL, "shell", "shells");
   beside(SC_CLASS_REST, "contact as at rest", "contacts as at rest");
+  if (s.pokes > 0) besides += (besides.empty() ? "" : ", ") + counted(s.pokes, "spot", "spots") + " of poke-through";
   return out + (besides.empty() ? "" : "\nbesides: " + besides) + "\n";
 }
 

@@ -60,6 +60,10 @@ std::string mask_text(const HiddenSkin& skin, const std::vector<HiddenMesh>& mes
       random_poses > 0 ? fmt::format(", {} random poses", random_poses) : "", skin.hidden, skin.is_hidden.size(),
       percent_text(static_cast<double>(skin.hidden), static_cast<double>(skin.is_hidden.size())),
       percent_text(skin.hidden_area, skin.area), skin.near_edge, margin_percent);
+  if (skin.poke_area > 0) {
+    out += fmt::format("poke-through: {} of the area that shows through clothes in these frames goes\n",
+                       percent_text(skin.poke_hidden_area, skin.poke_area));
+  }
   for (const HiddenMesh& mesh : meshes) {
     if (!mesh.hidden.empty())
       out += fmt::format("  {:<24} {:>7} of {}\n", mesh.name, mesh.hidden.size(), mesh.triangles);

@@ -610,6 +610,7 @@ namespace Spherechain
             public ulong* Bits;
             public UIntPtr BitWords;
             public ulong* PartPairs;
+            /// <summary>of all instances</summary>
             public UIntPtr PartPairWords;
             /// <summary>out: sorted by instance, then pair; or null. Entries past pair_count are written too. With several tasks leave room for twice the pairs, or it takes a second pass</summary>
             public CrowdPair* Pairs;

@@ -39,11 +39,12 @@ typedef struct sc_crowd_job {
   uint64_t* bits SC_ZERO; /* out: sc_pair_words() words an instance; or null */
   size_t bit_words SC_ZERO;
   /* out: the pairs of body parts of which spheres overlap, as sc_query.part_pairs has them: of n parts (n n + 63) / 64
-   * words an instance, bit a n + b where a <= b; or null. Ask the exact questions of an alarmed character with them. */
+   * words an instance, bit a n + b where a <= b; or null. Spheres are an alarm and can miss a contact: ask the exact
+   * questions of an alarmed character with these pairs for speed, or about all of them. */
   uint64_t* part_pairs SC_ZERO;
-  size_t part_pair_words SC_ZERO;
-  sc_crowd_pair* pairs SC_ZERO; /* out: sorted by instance, then pair; or null. Entries past pair_count are written
-                                   too. With several tasks leave room for twice the pairs, or it takes a second pass */
+  size_t part_pair_words SC_ZERO; /* of all instances */
+  sc_crowd_pair* pairs SC_ZERO;   /* out: sorted by instance, then pair; or null. Entries past pair_count are written
+                                     too. With several tasks leave room for twice the pairs, or it takes a second pass */
   size_t pair_capacity SC_ZERO;
   size_t pair_count SC_ZERO; /* out: how many there are, also where `pairs` is too small */
 #if defined(__cplusplus)

@@ -152,11 +152,11 @@ TEST_CASE("mask: skin that a clip shows stays") {
 
 TEST_CASE("mask: random poses within the clips' limits are looked at on request") {
   const Masked masked = mask(rod_in_tube(0.05), "--as json --random-poses 20", "mask.json");
-  CHECK(masked.run.out.find("30 frames of 1 clip, 20 random poses\n") == 0);
+  CHECK(masked.run.out.find(" of 1 clip, 20 random poses\n") != std::string::npos);
   const auto [low, high] = hidden_range(mask_as_json(rod_in_tube(0.05)));
   const auto [low_too, high_too] = hidden_range(json::parse(masked.bytes));
-  CHECK(low_too == doctest::Approx(low));  // a single joint goes nowhere else
-  CHECK(high_too == doctest::Approx(high));
+  CHECK(low_too >= low);
+  CHECK(high_too < high);  // some turn the tube, too, and show more of the rod
 }
 
 TEST_CASE("mask: a larger margin keeps more skin") {
