@@ -18,7 +18,7 @@ using namespace spherechain;
 
 namespace {
 
-constexpr int kFrames = 40, kRounds = 5, kRepeats = 3;
+constexpr int kFrames = 30, kRounds = 3, kRepeats = 2;
 
 double microseconds(const auto& run) {
   double least = 1e30;
