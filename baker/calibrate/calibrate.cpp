@@ -45,7 +45,7 @@ std::vector<SampledPair> sampled_pairs(const Character& character, const std::ve
   return out;
 }
 
-// Contacts that there are in most poses alarm nobody.
+// A pair whose skins touch in nearly every pose raises no alarm.
 void forget_what_always_touches(std::vector<SampledPair>& pairs, int poses) {
   for (SampledPair& pair : pairs) {
     const auto touches = std::ranges::count_if(pair.samples, &PairSample::touch);

@@ -18,8 +18,8 @@ constexpr double kTight = 0.03;      // nor is one that buries
 constexpr double kMoveAlike = 0.5;   // weight of bones that move both, where one buries the other
 constexpr double kMoveAsOne = 0.95;  // and where it does so at any distance
 constexpr double kNear = 0.035;      // between the vertices of two clusters that are layers of one place
-constexpr double kMiddles = 0.07;    // between their middles, or half of their sizes more than kNear
-constexpr double kLarge = 0.06;      // a cluster that is larger than that counts as this large
+constexpr double kMiddles = 0.07;    // between their middles; large clusters may be farther apart: see reach()
+constexpr double kLarge = 0.06;      // in reach() no cluster counts as larger
 constexpr double kStep = 1e-5;       // off a triangle, before a look
 constexpr std::uint32_t kEvery = 8;  // triangles of a cluster, of which one is looked from
 
