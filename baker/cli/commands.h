@@ -34,7 +34,8 @@ struct PlayOptions {
   MotionChoice motion;
   FrameChoice frames;
   std::string radius = "detect", backend = "auto";
-  bool contacts = false, continuous = false;
+  bool contacts = false, continuous = false, respond = false;
+  int ahead = 0;  // frames
 };
 ExitCode run_play(const PlayOptions& options);
 

@@ -197,6 +197,11 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"auto", "scalar", "simd", "cuda"}))
       ->capture_default_str();
   play_command->add_flag("--contacts", play.contacts, "List the triangles that intersect in the JSON, too");
+  CLI::Option* respond = play_command->add_flag(
+      "--respond", play.respond, "Keep hands and arms out of the body as a game does; look at the corrected motion");
+  play_command->add_option("--ahead", play.ahead, "Frames that --respond knows in advance")
+      ->check(CLI::Range(0, 3))
+      ->needs(respond);
   add_output(*play_command, "--json", play.json, "JSON file to write");
   play_command->callback([&] { run = [&] { return run_play(play); }; });
 

@@ -15,6 +15,7 @@
 #include "baker/play/cuda_frames.h"
 #include "baker/play/hidden_joints.h"
 #include "baker/play/player.h"
+#include "baker/play/responder.h"
 #include "baker/play/target.h"
 #include "baker/report/part_contacts.h"
 #include "baker/report/parts.h"
@@ -76,6 +77,28 @@ class Tally {
   std::size_t skin_ = 0, alarmed_ = 0, confirmed_ = 0;
 };
 
+ordered_json response_json(const ResponseMeasures& of) {
+  return {{"frames", of.frames},
+          {"faulty_before", of.faulty_before},
+          {"faulty_after", of.faulty_after},
+          {"new_faults", of.new_faults},
+          {"wrist_acceleration", of.wrist_acceleration},
+          {"elbow_acceleration", of.elbow_acceleration},
+          {"largest_jump_percent", 100 * of.largest_jump},
+          {"moved_without_fault", of.moved_without_fault},
+          {"residual_p95_percent", 100 * of.residual_p95},
+          {"us_mean", of.us_mean},
+          {"us_p99", of.us_p99}};
+}
+
+std::string response_text(const ResponseMeasures& of, double height_mm) {
+  return fmt::format(
+      "response: {} of {} frames had a fault of an arm, {} have one now ({} with a new one); acceleration of wrists x "
+      "{:.2f}, elbows x {:.2f}; largest jump {:.0f} mm; {:.1f} % of frames without a fault moved; {:.0f} us a frame\n",
+      of.faulty_before, of.frames, of.faulty_after, of.new_faults, of.wrist_acceleration, of.elbow_acceleration,
+      of.largest_jump * height_mm, 100 * of.moved_without_fault, of.us_mean);
+}
+
 std::string frames_text(const AnimatedAsset& animated) {
   const std::size_t clips = animated.clips().size();
   return clips > 1 ? fmt::format("{} clips, {} frames\n", clips, animated.frame_count()) : std::string();
@@ -98,6 +121,8 @@ ExitCode run_play(const PlayOptions& options) {
   PartContacts contacts(animated);
   std::vector<HiddenJoints> hidden(animated.clips().size(), HiddenJoints(animated));  // of each clip
   Tally tally;
+  std::optional<Responder> responder;
+  if (options.respond) responder.emplace(animated, target, options.ahead);
   const char* const refit = refit_name(animated.asset()->refit_rule());
   std::optional<PlayFile> file;
   if (!options.json.empty()) {
@@ -114,7 +139,7 @@ ExitCode run_play(const PlayOptions& options) {
     Progress progress("play " + options.asset + ":");
     for (int i = 0; i < animated.frame_count(); ++i) {
       progress.show(fmt::format("frame {} of {}", i + 1, animated.frame_count()));
-      const Deformation deformation = animated.deformation(i);
+      const Deformation deformation = responder ? responder->respond(i) : animated.deformation(i);
       if (animated.frame_at(i).between == 0) hidden[animated.frame_at(i).clip].add(deformation);
       const std::vector<float> positions = pack(animated.positions(deformation));
       FrameResult result;
@@ -134,7 +159,11 @@ ExitCode run_play(const PlayOptions& options) {
       frame["penetrations"] = penetrations_json(animated, skin.penetrations, contacts);
       file->add(frame);
     }
-    if (file) file->finish({{"clips", contacts.json()}});
+    if (file) {
+      ordered_json tail{{"clips", contacts.json()}};
+      if (responder) tail["response"] = response_json(responder->measures());
+      file->finish(tail);
+    }
   }
   for (std::size_t c = 0; c < hidden.size(); ++c) {
     const std::string& clip = animated.clips()[c].name;
@@ -144,6 +173,7 @@ ExitCode run_play(const PlayOptions& options) {
   say("{}{}\n{}\n{}(radius {}, refit {}, backend {})\n", frames_text(animated), contacts.text(options.motion.name()),
       tally.spheres_text(), tally.times_text(), options.radius, refit,
       on_cuda ? "cuda: refit and all pairs in one" : backend_text(target));
+  if (responder) say("{}", response_text(responder->measures(), animated.frame().height * mm_per_unit(animated.asset())));
   if (!options.json.empty()) say("wrote {}\n", options.json);
   return ExitCode::kDone;
 }

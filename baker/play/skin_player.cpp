@@ -110,6 +110,12 @@ const std::vector<Penetration>& SkinPlayer::measure_quickly(const PartPairBits* 
   return find_next(nullptr, asked, is_next);
 }
 
+const std::vector<Penetration>& SkinPlayer::measure_as_games() {
+  Query asked = query(SC_DETAIL_FULL);
+  asked.scope = SC_SCOPE_APART;
+  return find(nullptr, asked);
+}
+
 std::optional<Penetration> SkinPlayer::measure_parts(std::uint32_t part_a, std::uint32_t part_b) {
   Query asked = query(SC_DETAIL_FULL);
   const PartPairBits pairs = part_pairs(

@@ -83,6 +83,8 @@ class SkinPlayer {
   const std::vector<Penetration>& measure(const SkinPlayer& other, bool is_next) {
     return find_next(&other, query(SC_DETAIL_FULL), is_next);
   }
+  // The same between parts that are no layers of one place, without history: all that a game sees by default.
+  const std::vector<Penetration>& measure_as_games();
   // The same by the quick form, as games do; of some pairs of body parts alone, or of all. `is_next`: the pose follows
   // the one that measure() or this measured last.
   const std::vector<Penetration>& measure_quickly(const PartPairBits* pairs = nullptr, bool is_next = false);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "baker/play/bone_joints.h"
 #include "baker/play/play.h"
 #include "spherechain/contacts.h"
 
@@ -20,14 +21,9 @@ class StepPlayer {
   const std::vector<StepContact>& find(const Deformation& from, const Deformation& to);
 
  private:
-  std::vector<sc_transform> joints_of(const Deformation& deformation) const;
-
   const AnimatedAsset& animated_;
   Target target_;
-  std::vector<Affine> binds_;                 // a bone's, from its space to the rest pose
-  std::vector<std::size_t> order_;            // bones, parents first
-  std::vector<std::uint32_t> parents_;        // of a place in that order
-  std::vector<std::uint32_t> joint_of_bone_;  // a bone's place in it
+  BoneJoints joints_;
   std::vector<std::uint64_t> scratch_;
   std::vector<StepContact> contacts_;
 };

@@ -9,5 +9,6 @@
 #include "spherechain/filter.h"
 #include "spherechain/model.h"
 #include "spherechain/pose.h"
+#include "spherechain/response.h"
 #include "spherechain/rule.h"
 #include "spherechain/types.h"

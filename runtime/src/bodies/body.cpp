@@ -70,17 +70,16 @@ std::size_t lay_out(sc_body& body, const sc_body_def& def, std::uint64_t* words)
   return memory.used();
 }
 
-Status gather(sc_body& body, const sc_pose& pose, const sc_transform* place, GivenPose& given) {
+Status gather(sc_body& body, const sc_pose& pose, const sc_transform* place, bool in_asset_order, GivenPose& given) {
   const AssetView& asset = asset_of(body);
   given.pose = pose;
   if (pose.bones != nullptr) {
-    const Status status = body.model->joint_of_bone == nullptr
-                              ? check_bones(asset, pose)
+    const Status status = in_asset_order ? check_bones(asset, pose)
                               : sc_gather_bones(&body.model->asset, body.model->joint_of_bone, &pose, given.bones);
     if (status != SC_OK) {
       return status;
     }
-    if (body.model->joint_of_bone == nullptr) {
+    if (in_asset_order) {
       const BoneMatrices from = matrices_of(pose);
       for (std::size_t i = 0; i < 12 * asset.bone_count(); ++i) {
         given.bones[i] = from.data[i / 12 * from.stride + i % 12 / 4 * from.row + i % 4 * from.column];
@@ -108,6 +107,15 @@ Status gather(sc_body& body, const sc_pose& pose, const sc_transform* place, Giv
 }
 
 }  // namespace
+
+Status take_pose(sc_body& body, const sc_pose& pose, const sc_transform* place, bool in_asset_order) {
+  std::swap(body.now, body.before);
+  body.has_contacts = body.has_spheres = false;
+  const Status status = gather(body, pose, place, in_asset_order, body.now);
+  body.now.is_given = status == SC_OK;
+  return status;
+}
+
 }  // namespace spherechain
 
 using namespace spherechain;
@@ -152,11 +160,7 @@ sc_status sc_set_pose(sc_body* body, const sc_pose* pose, const sc_transform* pl
   if (body == nullptr || pose == nullptr) {
     return refuse(SC_NULL, body == nullptr ? SC_FIELD_BODIES : SC_FIELD_BONES);
   }
-  std::swap(body->now, body->before);
-  body->has_contacts = body->has_spheres = false;
-  const Status status = gather(*body, *pose, place, body->now);
-  body->now.is_given = status == SC_OK;
-  return status;
+  return take_pose(*body, *pose, place, body->model->joint_of_bone == nullptr);
 }
 
 sc_status sc_get_bounds(const sc_body* body, sc_vec3* low, sc_vec3* high) noexcept {

@@ -331,7 +331,40 @@ Span<Penetration> next_list(sc_body& body, const sc_query& query) {
   return list;
 }
 
+Status measure_bodies(sc_body& body, const sc_body* other, const sc_query& query, bool along, sc_penetrations& found) {
+  Status status = know_contacts(body, other, query);
+  if (status != SC_OK) {
+    return status;
+  }
+  MeasureJob job;
+  status = find_insides(body, other, query, job);
+  if (status != SC_OK) {
+    return status;
+  }
+  job.along = along ? 1 : 0;
+  job.adds_enclosed = 1;
+  job.met = body.contacts.parts;
+  job.met_count = body.contacts.part_count;
+  job.part_pairs = query.part_pairs == nullptr ? nullptr : pairs_asked(body, other, query);
+  const Span<Penetration> list = next_list(body, query);
+  std::size_t total = 0;
+  const bool fits = body.contacts.triangle_total <= body.triangles.size;
+  status = fits ? measure_contacts(body, other, query, job, list, total)
+                : measure_in_rounds(body, other, query, job, list, total);
+  if (status == SC_OK) {
+    finish(body, list, total, found);
+  }
+  return status;
+}
+
 }  // namespace
+
+Status find_along(sc_body& body, const sc_body* other, const sc_query& query, sc_penetrations& found) {
+  Status status = begin(&body, other, &found);
+  status = status == SC_OK ? check_query(&query, other) : status;
+  return status == SC_OK ? measure_bodies(body, other, query, true, found) : status;
+}
+
 }  // namespace spherechain
 
 using namespace spherechain;
@@ -360,29 +393,7 @@ sc_status sc_find_penetrations(sc_body* body, const sc_body* other, const sc_que
   if (status != SC_OK) {
     return status;
   }
-  const sc_query of = query_of(query);
-  status = know_contacts(*body, other, of);
-  if (status != SC_OK) {
-    return status;
-  }
-  MeasureJob insides;
-  status = find_insides(*body, other, of, insides);
-  if (status != SC_OK) {
-    return status;
-  }
-  insides.adds_enclosed = 1;
-  insides.met = body->contacts.parts;
-  insides.met_count = body->contacts.part_count;
-  insides.part_pairs = of.part_pairs == nullptr ? nullptr : pairs_asked(*body, other, of);
-  const Span<Penetration> list = next_list(*body, of);
-  std::size_t total = 0;
-  const bool fits = body->contacts.triangle_total <= body->triangles.size;
-  status = fits ? measure_contacts(*body, other, of, insides, list, total)
-                : measure_in_rounds(*body, other, of, insides, list, total);
-  if (status == SC_OK) {
-    finish(*body, list, total, *found);
-  }
-  return status;
+  return measure_bodies(*body, other, query_of(query), false, *found);
 }
 
 sc_status sc_find_sphere_pairs(sc_body* body, const sc_query* query, sc_sphere_pairs* found) noexcept {

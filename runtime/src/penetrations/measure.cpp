@@ -394,13 +394,17 @@ class Measurer {
     }
     pose_all_skins();
     const ExitSettings settings{fold_depth_of(in_.limits, quick.measures), are_joined(parts.a, parts.b)};
+    Double3 previous = previous_direction(parts);
+    const bool is_kept = normalize(previous);
+    if (in_.along && is_kept) {
+      return describe(parts, steady_exit(sweep_, contour, settings, exit, previous), in_sight, &quick);
+    }
     exit = shortest_exit(sweep_, contour, settings, exit);
     Double3 axes[3];
     axes_of(contour, exit.direction, axes);
     // A contact that the quick measures alone class as no fault stays no fault: both forms must agree.
     Penetration out = describe(parts, exit, look(parts, axes), is_likely ? nullptr : &quick);
-    Double3 previous = previous_direction(parts);
-    if (is_fault(out.kind) && normalize(previous)) {
+    if (is_fault(out.kind) && is_kept) {
       set_way(parts, steady_exit(sweep_, contour, settings, exit, previous), out);
     }
     if (!in_.quick) {

@@ -20,7 +20,7 @@ struct Meeting {
   Target target;  // resolved
   Span<const TriangleContact> contacts;
   Span<const Penetration> previous;
-  bool quick;
+  bool quick, along;
   Rule limits;
   std::uint64_t* scratch;  // measure_words() of them
   Span<Penetration> out;

@@ -56,7 +56,7 @@ Status check_rest(const Job& job, std::size_t words, Target& resolved) {
 template <typename Job>
 Meeting meeting_of(const Job& job, const Meeting::Side& a, const Meeting::Side& b, Target resolved) {
   const Rule limits = job.rule == nullptr ? sc_default_rule() : *job.rule;
-  Meeting out{a, b, false, {}, resolved, {}, {}, job.quick != 0, limits, job.scratch, {}};
+  Meeting out{a, b, false, {}, resolved, {}, {}, job.quick != 0, job.along != 0, limits, job.scratch, {}};
   out.contacts = {job.contacts, job.contact_count};
   out.previous = {job.previous, job.previous_count};
   out.out = {job.penetrations, job.penetration_capacity};

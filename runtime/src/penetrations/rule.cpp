@@ -28,6 +28,7 @@ constexpr Rule kDefault = [] {
 }();
 
 constexpr double kAnyDepth = 1e30;  // finite: a share of 0 leaves nothing of it
+constexpr double kMargin = 0.65;      // of the depth at which a thin intersection is none any more
 constexpr float kEase = 0.7F;       // of what is allowed
 
 // How close two spots are at rest: 1 up to half of the limit, a half at it, 0 from one and a half times it on.
@@ -138,6 +139,18 @@ float fault_depth_of(const Rule& rule, const Measures& of) {
                       share_above(1 - double{of.touching}, 1 - double{rule.at_rest});
   return static_cast<float>(std::max(seen, containment_of(rule, of)) *
                             std::max(double{of.depth} - allowed(rule, of).most(), 0.0));
+}
+
+double stays_allowed(const Rule& rule, const Measures& of) {
+  const Allowed up_to = allowed(rule, of);
+  const double others = std::max({up_to.shell, up_to.touch, up_to.fold});
+  if (of.extent < 0 || rule.touch_depth > 0) {
+    return others;
+  }
+  // As it gets shallower, its line gets shorter, and `extent` falls with more than the depth.
+  const double share = 1 - containment_of(rule, of),
+               thin = double{of.depth} * std::sqrt(double{rule.extent} / std::max(double{of.extent}, 1e-6));
+  return std::max(others, share * kMargin * std::min(thin, double{rule.touch_times} * up_to.touch));
 }
 
 double fold_depth_of(const Rule& rule, const Measures& of) {

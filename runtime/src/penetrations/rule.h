@@ -13,6 +13,8 @@ Status check_rule(const sc_rule* rule);
 double touch_depth_of(const Rule& rule, double metre, double height);
 // How deep a fold may be; 0 where no joint folds the two spots.
 double fold_depth_of(const Rule& rule, const Measures& of);
+// The depth at which the intersection would be no fault any more, with a margin, if the two parted so far.
+double stays_allowed(const Rule& rule, const Measures& of);
 // sc_penetration.fault_depth.
 float fault_depth_of(const Rule& rule, const Measures& of);
 // How near a part is to being inside another: from 0 at three quarters of the share that makes it so, to 1.

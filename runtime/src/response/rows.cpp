@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: MIT
+#include "runtime/src/response/rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/src/base/status.h"
+#include "runtime/src/penetrations/rule.h"
+
+namespace spherechain {
+namespace {
+
+// Lengths are shares of the character's height.
+constexpr double kEase = 0.0025;       // around what is allowed, the correction sets in gradually
+constexpr double kSlop = 0.0006;       // so much shallower than what is allowed
+constexpr double kPatch = 0.024;       // spots that are farther apart are two patches
+constexpr double kBend = 0.035;        // a skin's radius: it bends away from a row's plane
+constexpr double kGapMost = 0.008, kSlideMost = 0.05;  // of a row that is kept
+constexpr float kUnseenMost = 0.5F;    // seconds
+constexpr double kLoosen = 0.15;        // heights a second, by which a row that is not found gives way
+constexpr double kForget = 0.1;        // seconds, in which a larger depth is allowed again
+constexpr double kAnyDepth = 10;       // what is allowed where nothing is a fault
+
+constexpr Affine kWorld{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+
+// The spaces of a row's two spots, in a pose of the joints.
+struct Spaces {
+  Affine part, other;
+};
+
+Affine space_of_other(const sc_response& response, const Affine* world, const sc_response_frame& frame,
+                      const KeptRow& row) {
+  if (row.body == 0) {
+    const std::uint32_t joint = response.joint_of_part[row.other];
+    return joint == SC_NO_JOINT ? kWorld : world[joint];
+  }
+  if (row.body > frame.other_count) {
+    return kWorld;  // the ground
+  }
+  const sc_body& other = *frame.others[row.body - 1];
+  const std::int32_t bone = asset_of(other).part(row.other).bone;
+  Affine out = kWorld;
+  for (std::size_t i = 0; i < 12 && bone >= 0 && other.now.pose.bones != nullptr; ++i) {
+    out.m[i / 4][i % 4] = double{other.now.bones[12 * static_cast<std::size_t>(bone) + i]};
+  }
+  return out;
+}
+
+Spaces spaces_of(const sc_response& response, const Affine* world, const sc_response_frame& frame, const KeptRow& row) {
+  const std::uint32_t joint = response.joint_of_part[row.part];
+  return {joint == SC_NO_JOINT ? kWorld : world[joint], space_of_other(response, world, frame, row)};
+}
+
+void store(const Double3& from, float (&to)[3]) {
+  const Vec3 rounded = to_float(from);
+  to[0] = rounded.x;
+  to[1] = rounded.y;
+  to[2] = rounded.z;
+}
+
+Double3 load(const float (&from)[3]) { return {double{from[0]}, double{from[1]}, double{from[2]}}; }
+
+// Puts a kept row into a pose of the joints.
+void carry(const Spaces& spaces, double height, Row& row) {
+  row.at = move(spaces.part, load(row.kept.at));
+  row.at_other = move(spaces.other, load(row.kept.at_other));
+  row.normal = turn(spaces.other, load(row.kept.normal));
+  if (!normalize(row.normal)) {
+    row.normal = {0, 1, 0};
+  }
+  const Double3 apart = row.at - row.at_other;
+  row.gap = dot(row.normal, apart);
+  row.slide = length(apart - row.gap * row.normal);
+  row.gap += row.slide * row.slide / (2 * kBend * height);
+}
+
+// The way back. False where a space has no inverse.
+bool keep(const Spaces& spaces, Row& row) {
+  Affine part, other;
+  if (!invert(spaces.part, part) || !invert(spaces.other, other)) {
+    return false;
+  }
+  Double3 normal = turn(other, row.normal);
+  if (!normalize(normal)) {
+    return false;
+  }
+  store(move(part, row.at), row.kept.at);
+  store(move(other, row.at_other), row.kept.at_other);
+  store(normal, row.kept.normal);
+  return true;
+}
+
+// How deep the two may be. Layers, and what touches at rest, may be as deep as they are.
+double allowed_of(const sc_response& response, const Penetration& found) {
+  return found.kind == SC_CLASS_REST || found.kind == SC_CLASS_SHELL
+             ? kAnyDepth * response.height
+             : std::min(stays_allowed(response.rule, found.measures), kAnyDepth * response.height);
+}
+
+Row* find_patch(sc_response& response, const Row& like) {
+  for (std::size_t i = 0; i < response.row_count; ++i) {
+    Row& row = response.rows[i];
+    if (row.kept.part == like.kept.part && row.kept.other == like.kept.other && row.kept.body == like.kept.body &&
+        length(row.at - like.at) < kPatch * response.height) {
+      return &row;
+    }
+  }
+  return nullptr;
+}
+
+void take(sc_response& response, const sc_response_frame& frame, const Penetration& found, std::size_t body,
+          double seconds) {
+  Row row{};
+  row.kept.part = static_cast<std::uint16_t>(found.part);
+  row.kept.other = static_cast<std::uint16_t>(found.other);
+  row.kept.body = static_cast<std::uint16_t>(body);
+  row.normal = to_double(found.direction);
+  row.at = to_double(found.deepest.position);
+  double depth = double{found.distance}, allowed = allowed_of(response, found);
+  Row* place = find_patch(response, row);
+  if (place != nullptr) {
+    Double3 mean = place->normal + row.normal;
+    if (dot(place->normal, row.normal) > 0.5 && normalize(mean)) {
+      depth *= dot(mean, row.normal);
+      row.normal = mean;
+    }
+    const double before = double{place->kept.allowed};
+    allowed = std::min(allowed, before + (allowed - before) * std::min(seconds / kForget, 1.0));
+  } else if (response.row_count < kRowsMost) {
+    place = &response.rows[response.row_count++];
+    *place = row;
+  } else {
+    return;
+  }
+  row.gap = -depth;
+  row.at_other = row.at + depth * row.normal;
+  row.kept.allowed = static_cast<float>(allowed);
+  if (keep(spaces_of(response, response.world.data, frame, row.kept), row)) {
+    *place = row;
+  }
+}
+
+void take_all(sc_response& response, const sc_response_frame& frame, const sc_penetrations& found, std::size_t body,
+              double seconds) {
+  for (std::size_t i = 0; i < found.count; ++i) {
+    if (response.turning_of_part[found.items[i].part] != 0 ||
+        (body == 0 && response.turning_of_part[found.items[i].other] != 0)) {
+      response.fault_depth += double{found.items[i].fault_depth};
+      take(response, frame, found.items[i], body, seconds);
+    }
+  }
+}
+
+// The last rows as the detector takes them: it measures along their normals where that is no detour.
+std::size_t list_previous(sc_response& response, std::size_t body) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < response.row_count; ++i) {
+    const Row& row = response.rows[i];
+    if (row.kept.body == body) {
+      sc_penetration& last = response.previous[count++];
+      last = {};
+      last.part = row.kept.part;
+      last.other = row.kept.other;
+      last.direction = to_float(row.normal);
+      last.kind = SC_CLASS_PENETRATION;
+    }
+  }
+  return count;
+}
+
+// Drops what is out of reach. A row that was not found does not intersect, whatever its plane says.
+void drop_rows(sc_response& response, const sc_response_frame& frame) {
+  std::uint32_t left = 0;
+  for (std::size_t i = 0; i < response.row_count; ++i) {
+    Row row = response.rows[i];
+    if (row.kept.unseen > 0 && row.gap < 0) {
+      row.at_other = row.at_other + row.gap * row.normal;
+      row.gap = 0;
+      if (!keep(spaces_of(response, response.world.data, frame, row.kept), row)) {
+        continue;
+      }
+    }
+    if (row.kept.unseen < kUnseenMost && row.gap < kGapMost * response.height &&
+        row.slide < kSlideMost * response.height) {
+      response.rows[left++] = row;
+    }
+  }
+  response.row_count = left;
+}
+
+}  // namespace
+
+void carry_rows(sc_response& response, const State& state, const sc_response_frame& frame, double seconds) {
+  response.row_count = 0;
+  for (std::size_t i = 0; i < std::min<std::size_t>(state.row_count, kRowsMost); ++i) {
+    Row& row = response.rows[response.row_count];
+    row = Row{};
+    row.kept = state.rows[i];
+    const bool is_there = row.kept.part < response.joint_of_part.size &&
+                          (row.kept.body > 0 ? row.kept.body <= frame.other_count + (frame.ground != nullptr ? 1 : 0)
+                                             : row.kept.other < response.joint_of_part.size);
+    if (is_there) {
+      row.kept.unseen += static_cast<float>(seconds);
+      carry(spaces_of(response, response.world.data, frame, row.kept), response.height, row);
+      ++response.row_count;
+    }
+  }
+}
+
+Status find_rows(sc_response& response, const sc_response_frame& frame, double seconds) {
+  for (std::size_t i = 0; i < response.row_count; ++i) {
+    carry(spaces_of(response, response.world.data, frame, response.rows[i].kept), response.height, response.rows[i]);
+  }
+  response.fault_depth = 0;
+  sc_query query{};
+  query.rule = &response.rule;
+  query.classes = (1U << (SC_CLASS_INSIDE + 1)) - 1;
+  query.target = frame.target;
+  query.previous = response.previous;
+  const std::size_t bodies = 1 + frame.other_count + (frame.ground != nullptr ? 1 : 0);
+  for (std::size_t body = 0; body < bodies; ++body) {
+    sc_penetrations found{};
+    query.part_pairs = body == 0 ? response.part_pairs.data : nullptr;
+    query.ignored_parts = body == 0 ? nullptr : response.resting_parts.data;
+    query.previous_count = list_previous(response, body);
+    const Status status = body <= frame.other_count
+                              ? find_along(*response.body, body == 0 ? nullptr : frame.others[body - 1], query, found)
+                              : sc_find_in_ground(response.body, frame.ground, &query, &found);
+    if (status != SC_OK) {
+      return status;
+    }
+    take_all(response, frame, found, body, seconds);
+  }
+  drop_rows(response, frame);
+  return done();
+}
+
+void set_wanted(sc_response& response, const sc_response_frame& frame) {
+  const double ease = kEase * response.height;
+  for (std::size_t i = 0; i < response.row_count; ++i) {
+    Row& row = response.rows[i];
+    Row animated = row;
+    carry(spaces_of(response, response.animated.data, frame, row.kept), response.height, animated);
+    // A parabola leads from nothing, where the animation is clear by `ease`, to all that it lacks.
+    const double loose = kLoosen * double{row.kept.unseen},
+                 least = (kSlop - loose) * response.height - double{row.kept.allowed}, lacks = least - animated.gap,
+                 eased = lacks <= -ease  ? 0
+                         : lacks >= ease ? lacks
+                                         : (lacks + ease) * (lacks + ease) / (4 * ease);
+    row.wanted = std::min(animated.gap + eased, least + ease);
+  }
+}
+
+double most_lacking(const sc_response& response) {
+  double most = 0;
+  for (std::size_t i = 0; i < response.row_count; ++i) {
+    most = std::max(most, response.rows[i].wanted - response.rows[i].gap);
+  }
+  return most;
+}
+
+void keep_rows(const sc_response& response, State& state) {
+  state.row_count = response.row_count;
+  for (std::size_t i = 0; i < response.row_count; ++i) {
+    state.rows[i] = response.rows[i].kept;
+  }
+}
+
+}  // namespace spherechain

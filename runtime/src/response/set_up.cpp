@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+// A response's memory, and what it knows of the character before its first frame.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <new>
+
+#include "runtime/src/base/pair_bits.h"
+#include "runtime/src/base/status.h"
+#include "runtime/src/clusters/set_up.h"
+#include "runtime/src/penetrations/rule.h"
+#include "runtime/src/response/response.h"
+
+namespace spherechain {
+namespace {
+
+constexpr double kBudget = 1.05, kBudgetMost = 2;  // radians
+
+std::size_t lay_out(sc_response& response, std::size_t joints, std::uint64_t* words) {
+  WordMemory memory(words);
+  const AssetView& asset = asset_of(*response.body);
+  const std::size_t parts = asset.part_count();
+  sc_response* self = nullptr;
+  memory.take(self, 1);
+  memory.take(response.parents, joints);
+  memory.take(response.order, joints);
+  memory.take(response.joint_of_part, parts);
+  memory.take(response.turning_of_part, parts);
+  memory.take(response.part_pairs, words_for(parts * parts));
+  memory.take(response.resting_parts, words_for(parts));
+  memory.take(response.joints, joints);
+  memory.take(response.animated, joints);
+  memory.take(response.world, joints);
+  memory.take(response.bones, 12 * asset.bone_count());
+  return memory.used();
+}
+
+bool ends_with(const char* name, const char* end) {
+  const std::size_t size = std::strlen(name), wanted = std::strlen(end);
+  return size >= wanted && std::strcmp(name + size - wanted, end) == 0;
+}
+
+// How easily a body part turns if the caller does not say.
+double mobility_of(const char* name) {
+  constexpr double kOfHand = 0.3;
+  return ends_with(name, " upper arm") || ends_with(name, " forearm") ? 1 : ends_with(name, " hand") ? kOfHand : 0;
+}
+
+// Of an angle up to a half, the same bits everywhere.
+double tangent(double angle) {
+  const double s = angle * angle;
+  return angle * (1 + s / 3 + 2 * s * s / 15 + 17 * s * s * s / 315);
+}
+
+// Adds a joint that turns. False where a figure is out of range, or they are too many.
+bool add_turning(sc_response& response, std::uint32_t joint, double mobility, double budget) {
+  const auto end = response.turning + response.turning_count;
+  if (mobility == 0 || std::any_of(response.turning, end, [&](const TurningJoint& t) { return t.joint == joint; })) {
+    return true;
+  }
+  if (response.turning_count == kTurningMost || !(mobility > 0 && mobility <= 1) ||
+      !(budget >= 0 && budget <= kBudgetMost)) {
+    return false;
+  }
+  TurningJoint& added = response.turning[response.turning_count++];
+  added = TurningJoint{};
+  added.joint = joint;
+  added.mobility = mobility;
+  added.budget = 2 * tangent(budget / 4);
+  return true;
+}
+
+bool add_all_turning(sc_response& response, const sc_response_def& def) {
+  const auto budget = [&](std::uint32_t joint) { return def.budget == nullptr ? kBudget : double{def.budget[joint]}; };
+  const sc_asset& asset = response.body->model->asset;
+  for (std::uint32_t part = 0; def.mobility == nullptr && part < response.joint_of_part.size; ++part) {
+    const std::uint32_t joint = response.joint_of_part[part];
+    if (joint != SC_NO_JOINT &&
+        !add_turning(response, joint, mobility_of(sc_asset_part(&asset, part).name), budget(joint))) {
+      return false;
+    }
+  }
+  for (std::uint32_t joint = 0; def.mobility != nullptr && joint < def.joint_count; ++joint) {
+    if (!add_turning(response, joint, double{def.mobility[joint]}, budget(joint))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// A direction in these axes.
+Double3 unit_into(const Affine& axes, const Double3& v) {
+  const auto& m = axes.m;
+  Double3 out{m[0][0] * v.x + m[1][0] * v.y + m[2][0] * v.z, m[0][1] * v.x + m[1][1] * v.y + m[2][1] * v.z,
+              m[0][2] * v.x + m[1][2] * v.y + m[2][2] * v.z};
+  return normalize(out) ? out : Double3{0, 0, 0};
+}
+
+// A joint at rest. False where no bone says where it is.
+bool at_rest(const sc_model& model, std::uint32_t joint, Affine& out) {
+  const std::size_t bones = view_of(model.asset).bone_count();
+  for (std::size_t b = 0; b < bones; ++b) {
+    if ((model.joint_of_bone == nullptr ? b : model.joint_of_bone[b]) == joint) {
+      const float* const bind = sc_asset_bone(&model.asset, b).inverse_bind;
+      Affine inverse_bind;
+      for (std::size_t i = 0; i < 12; ++i) {
+        inverse_bind.m[i / 4][i % 4] = double{bind[i]};
+      }
+      return invert(inverse_bind, out);
+    }
+  }
+  return false;
+}
+
+// The axis about which an elbow is bent at rest, in its parent's axes; zero where it is straight or not known.
+Double3 hinge_at_rest(const sc_response& response, const TurningJoint& elbow) {
+  constexpr double kStraight = 0.02;  // a sine
+  const sc_model& model = *response.body->model;
+  const std::uint32_t parent = response.parents[elbow.joint];
+  Affine above, own, below, axes;
+  if (parent == SC_NO_JOINT || !at_rest(model, elbow.above, above) || !at_rest(model, elbow.joint, own) ||
+      !at_rest(model, elbow.below, below) || !at_rest(model, parent, axes)) {
+    return {0, 0, 0};
+  }
+  const auto place_of = [](const Affine& joint) { return Double3{joint.m[0][3], joint.m[1][3], joint.m[2][3]}; };
+  Double3 upper = place_of(own) - place_of(above), lower = place_of(below) - place_of(own);
+  if (!normalize(upper) || !normalize(lower)) {
+    return {0, 0, 0};
+  }
+  const Double3 across = cross(upper, lower);
+  return length(across) > kStraight ? unit_into(axes_of(axes), across) : Double3{0, 0, 0};
+}
+
+// Finds arms: a hand that hangs on a forearm, which hangs on an upper arm.
+void find_arms(sc_response& response) {
+  const sc_asset& asset = response.body->model->asset;
+  for (std::size_t hand = 0; hand < response.joint_of_part.size; ++hand) {
+    const sc_part of_hand = sc_asset_part(&asset, hand);
+    if (!ends_with(of_hand.name, " hand") || of_hand.parent < 0) {
+      continue;
+    }
+    const auto forearm = static_cast<std::size_t>(of_hand.parent);
+    const std::int32_t upper = sc_asset_part(&asset, forearm).parent;
+    if (!ends_with(sc_asset_part(&asset, forearm).name, " forearm") || upper < 0) {
+      continue;
+    }
+    const std::uint32_t shoulder = response.joint_of_part[static_cast<std::size_t>(upper)],
+                        elbow = response.joint_of_part[forearm], wrist = response.joint_of_part[hand];
+    for (std::size_t t = 0; t < response.turning_count; ++t) {
+      TurningJoint& joint = response.turning[t];
+      joint.wrist = joint.joint == shoulder || joint.joint == elbow || joint.joint == wrist ? wrist : joint.wrist;
+      if (joint.joint == elbow) {
+        joint.above = shoulder;
+        joint.below = wrist;
+        joint.hinge = hinge_at_rest(response, joint);
+      }
+    }
+  }
+}
+
+// The turning joints that move a part, a bit each.
+std::uint32_t turning_of(const sc_response& response, std::size_t part) {
+  std::uint32_t out = 0;
+  for (std::uint32_t joint = response.joint_of_part[part]; joint != SC_NO_JOINT; joint = response.parents[joint]) {
+    for (std::uint32_t t = 0; t < response.turning_count; ++t) {
+      out |= response.turning[t].joint == joint ? 1U << t : 0U;
+    }
+  }
+  return out;
+}
+
+void find_pairs(sc_response& response, const sc_response_def& def) {
+  const sc_asset& asset = response.body->model->asset;
+  const std::size_t parts = response.joint_of_part.size;
+  std::fill(response.part_pairs.begin(), response.part_pairs.end(), std::uint64_t{0});
+  std::fill(response.resting_parts.begin(), response.resting_parts.end(), std::uint64_t{0});
+  for (std::size_t a = 0; a < parts; ++a) {
+    response.turning_of_part[a] = turning_of(response, a);
+    response.resting_parts[a / 64] |= std::uint64_t{response.turning_of_part[a] == 0} << a % 64;
+  }
+  for (std::size_t a = 0; a < parts; ++a) {
+    for (std::size_t b = a + 1; b < parts; ++b) {
+      const auto is_asked_as = [&](std::size_t bit) { return (def.part_pairs[bit / 64] >> bit % 64 & 1) != 0; };
+      const bool are_joined = sc_asset_part(&asset, a).parent == static_cast<std::int32_t>(b) ||
+                              sc_asset_part(&asset, b).parent == static_cast<std::int32_t>(a);
+      const bool is_asked = response.turning_of_part[a] != response.turning_of_part[b] &&
+                            (def.part_pairs == nullptr ? !are_joined
+                                                       : is_asked_as(a * parts + b) || is_asked_as(b * parts + a));
+      response.part_pairs[(a * parts + b) / 64] |= std::uint64_t{is_asked} << (a * parts + b) % 64;
+    }
+  }
+}
+
+Status fill(sc_response& response, const sc_response_def& def) {
+  std::copy_n(def.parents, def.joint_count, response.parents.data);
+  if (!sort_joints({response.parents.data, response.parents.size}, response.order)) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_PARENTS);
+  }
+  for (std::uint32_t part = 0; part < response.joint_of_part.size; ++part) {
+    response.joint_of_part[part] = sc_get_part_joint(response.body->model, part);
+  }
+  if (!add_all_turning(response, def)) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_JOINTS);
+  }
+  find_arms(response);
+  find_pairs(response, def);
+  return done();
+}
+
+// The number of joints that a model's bones need.
+std::size_t joints_of(const sc_model& model) {
+  const std::size_t bones = view_of(model.asset).bone_count();
+  std::size_t out = model.joint_of_bone == nullptr ? bones : 0;
+  for (std::size_t b = 0; b < bones && model.joint_of_bone != nullptr; ++b) {
+    out = model.joint_of_bone[b] == SC_NO_JOINT ? out : std::max<std::size_t>(out, model.joint_of_bone[b] + 1);
+  }
+  return out;
+}
+
+}  // namespace
+}  // namespace spherechain
+
+using namespace spherechain;
+
+extern "C" {
+
+sc_status sc_create_response(sc_body* body, const sc_response_def* def, sc_response** response) noexcept {
+  if (response != nullptr) {
+    *response = nullptr;
+  }
+  if (body == nullptr || def == nullptr || response == nullptr || def->parents == nullptr) {
+    return refuse(SC_NULL, body == nullptr       ? SC_FIELD_BODIES
+                           : response == nullptr ? SC_FIELD_OUTPUT
+                                                 : SC_FIELD_PARENTS);
+  }
+  sc_response made{};
+  made.body = body;
+  made.rule = def->rule == nullptr ? sc_default_rule() : *def->rule;
+  if (def->joint_count < joints_of(*body->model)) {
+    return refuse(SC_TOO_SMALL, SC_FIELD_JOINTS);
+  }
+  const Status rule = check_rule(def->rule);
+  if (rule != SC_OK) {
+    return rule;
+  }
+  const Status complete = choose_allocator(def->allocator, body->allocator, made.allocator);
+  if (complete != SC_OK) {
+    return complete;
+  }
+  if (!made.block.allocate(made.allocator, lay_out(made, def->joint_count, nullptr))) {
+    return refuse(SC_NO_MEMORY, SC_FIELD_NONE);
+  }
+  lay_out(made, def->joint_count, made.block.words);
+  const Status status = fill(made, *def);
+  if (status != SC_OK) {
+    made.block.release(made.allocator);
+    return status;
+  }
+  *response = new (made.block.words) sc_response(made);
+  return done();
+}
+
+void sc_destroy_response(sc_response* response) noexcept {
+  if (response != nullptr) {
+    Block block = response->block;
+    const sc_allocator allocator = response->allocator;
+    block.release(allocator);
+  }
+}
+
+}  // extern "C"

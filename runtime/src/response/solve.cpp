@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+#include "runtime/src/response/solve.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spherechain {
+namespace {
+
+constexpr std::size_t kSweeps = 40;
+constexpr double kRoundMost = 0.4;    // radians that a joint turns in a round
+constexpr double kOffHinge = 0.25;    // of an elbow's mobility, about other axes than its own
+constexpr double kStraight = 0.1;     // the sine of a bend below which an elbow's axis is taken from the rest pose
+constexpr double kKeepsWrist = 100;   // how dear it is to move the wrist by a metre of a human, against a radian
+
+Double3 place_of(const Affine& joint) { return {joint.m[0][3], joint.m[1][3], joint.m[2][3]}; }
+
+// From the world's axes, and to them.
+Double3 into(const Affine& axes, const Double3& v) {
+  const auto& m = axes.m;
+  return {m[0][0] * v.x + m[1][0] * v.y + m[2][0] * v.z, m[0][1] * v.x + m[1][1] * v.y + m[2][1] * v.z,
+          m[0][2] * v.x + m[1][2] * v.y + m[2][2] * v.z};
+}
+
+// The axes that a joint's turns are in: its parent's. Turns go the other way in mirrored ones.
+Affine turning_axes(const sc_response& response, const Affine* world, std::size_t turning) {
+  const std::uint32_t parent = response.parents[response.turning[turning].joint];
+  Affine out = axes_of(parent == SC_NO_JOINT ? response.place : world[parent]);
+  const Double3 x{out.m[0][0], out.m[1][0], out.m[2][0]}, y{out.m[0][1], out.m[1][1], out.m[2][1]},
+      z{out.m[0][2], out.m[1][2], out.m[2][2]};
+  const double sign = dot(cross(x, y), z) < 0 ? -1 : 1;
+  for (auto& row : out.m) {
+    for (double& entry : row) {
+      entry *= sign;
+    }
+  }
+  return out;
+}
+
+// How an elbow bends as animated, in its parent's axes.
+struct Bend {
+  Double3 axis{0, 0, 0};  // about which it bends further; zero: not known
+  double tangent = 0;     // of half of its angle
+};
+
+Bend bend_of(const sc_response& response, std::size_t turning) {
+  const TurningJoint& joint = response.turning[turning];
+  Bend out;
+  if (joint.above == SC_NO_JOINT || joint.below == SC_NO_JOINT) {
+    return out;
+  }
+  const Span<Affine>& at = response.animated;
+  Double3 upper = place_of(at[joint.joint]) - place_of(at[joint.above]),
+          lower = place_of(at[joint.below]) - place_of(at[joint.joint]);
+  if (!normalize(upper) || !normalize(lower)) {
+    return out;
+  }
+  const Double3 across = into(turning_axes(response, at.data, turning), cross(upper, lower));
+  const double sine = length(across);
+  out.tangent = sine / std::max(1 + dot(upper, lower), 1e-3);
+  out.axis = across + std::max(kStraight - sine, 0.0) * joint.hinge;
+  if (sine < kStraight && dot(joint.hinge, joint.hinge) == 0) {
+    return Bend{};
+  }
+  return normalize(out.axis) ? out : Bend{};
+}
+
+// What the joints are and how they turn, in the pose of this round.
+struct Joints {
+  Affine axes[kTurningMost];
+  Double3 hinge[kTurningMost];
+  // How the place of a joint's wrist follows its turn: a turn x moves it by `lever` x x, in the joint's axes.
+  Double3 lever[kTurningMost];
+};
+
+Double3 eased(const TurningJoint& joint, const Double3& hinge, const Double3& x) {
+  const bool is_hinge = dot(hinge, hinge) > 0;
+  return joint.mobility * (is_hinge ? kOffHinge * x + (1 - kOffHinge) * dot(hinge, x) * hinge : x);
+}
+
+bool moves(const sc_response& response, std::size_t part, std::size_t turning) {
+  return (response.turning_of_part[part] >> turning & 1) != 0;
+}
+
+// The joint at the end of the arm that a row is on, if the row is not on the hand itself.
+std::uint32_t wrist_of(const sc_response& response, std::size_t part) {
+  for (std::size_t t = response.turning_count; t-- > 0;) {
+    const TurningJoint& joint = response.turning[t];
+    if (moves(response, part, t) && (joint.wrist == SC_NO_JOINT || joint.joint == joint.wrist)) {
+      return SC_NO_JOINT;
+    }
+  }
+  for (std::size_t t = 0; t < response.turning_count; ++t) {
+    if (moves(response, part, t)) {
+      return response.turning[t].wrist;
+    }
+  }
+  return SC_NO_JOINT;
+}
+
+// Solves the symmetric system M x = b.
+Double3 solve(const double (&m)[3][3], const Double3& b) {
+  const Double3 x{m[0][0], m[1][0], m[2][0]}, y{m[0][1], m[1][1], m[2][1]}, z{m[0][2], m[1][2], m[2][2]};
+  const double determinant = dot(x, cross(y, z));
+  return !(std::abs(determinant) > 0)
+             ? Double3{0, 0, 0}
+             : (1 / determinant) * Double3{dot(b, cross(y, z)), dot(x, cross(b, z)), dot(x, cross(y, b))};
+}
+
+// How each joint follows a pull on a row: the cheaper the turn, the further, and so that the wrist moves little.
+void find_pull(const sc_response& response, const Joints& joints, Row& row) {
+  const std::size_t count = response.turning_count;
+  for (std::size_t t = 0; t < count; ++t) {
+    row.turns[t] = eased(response.turning[t], joints.hinge[t], row.opens[t]);
+  }
+  const std::uint32_t wrist = wrist_of(response, row.kept.part);
+  if (wrist == SC_NO_JOINT) {
+    return;
+  }
+  const double metre = response.height / 1.75;
+  double m[3][3] = {};
+  Double3 moved{0, 0, 0};
+  for (std::size_t t = 0; t < count; ++t) {
+    const TurningJoint& joint = response.turning[t];
+    if (joint.wrist != wrist || joint.joint == wrist) {
+      continue;
+    }
+    const Double3 lever = (1 / metre) * joints.lever[t];
+    moved = moved + turn(joints.axes[t], cross(row.turns[t], lever));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Double3 world{k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
+      const Double3 by = eased(joint, joints.hinge[t], cross(lever, into(joints.axes[t], world)));
+      const Double3 then = turn(joints.axes[t], cross(by, lever));
+      m[0][k] += then.x;
+      m[1][k] += then.y;
+      m[2][k] += then.z;
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    m[k][k] += 1 / kKeepsWrist;
+  }
+  const Double3 back = solve(m, moved);
+  for (std::size_t t = 0; t < count; ++t) {
+    const TurningJoint& joint = response.turning[t];
+    if (joint.wrist == wrist && joint.joint != wrist) {
+      const Double3 lever = (1 / metre) * joints.lever[t];
+      row.turns[t] = row.turns[t] - eased(joint, joints.hinge[t], cross(lever, into(joints.axes[t], back)));
+    }
+  }
+}
+
+// How a turn of each joint, in its axes, opens a row.
+void find_opening(const sc_response& response, const Joints& joints, Row& row) {
+  for (std::size_t t = 0; t < response.turning_count; ++t) {
+    const Double3 from = place_of(response.world[response.turning[t].joint]);
+    Double3 opens{0, 0, 0};
+    if (moves(response, row.kept.part, t)) {
+      opens = opens + cross(row.at - from, row.normal);
+    }
+    if (row.kept.body == 0 && moves(response, row.kept.other, t)) {
+      opens = opens - cross(row.at_other - from, row.normal);
+    }
+    row.opens[t] = into(joints.axes[t], opens);
+  }
+}
+
+Double3 shortened(const Double3& of, double most) {
+  const double size = length(of);
+  return size > most ? (most / size) * of : of;
+}
+
+}  // namespace
+
+void solve_rows(sc_response& response, const Double3* rest, Double3* turns) {
+  const std::size_t count = response.turning_count;
+  Joints joints;
+  Double3 change[kTurningMost];
+  for (std::size_t t = 0; t < count; ++t) {
+    const TurningJoint& joint = response.turning[t];
+    joints.axes[t] = turning_axes(response, response.world.data, t);
+    joints.hinge[t] = bend_of(response, t).axis;
+    joints.lever[t] = joint.wrist == SC_NO_JOINT
+                          ? Double3{0, 0, 0}
+                          : into(joints.axes[t], place_of(response.world[joint.wrist]) -
+                                                     place_of(response.world[joint.joint]));
+    change[t] = rest[t] - turns[t];
+  }
+  for (std::size_t i = 0; i < response.row_count; ++i) {
+    Row& row = response.rows[i];
+    row.pull = 0;
+    find_opening(response, joints, row);
+    find_pull(response, joints, row);
+  }
+  for (std::size_t sweep = 0; sweep < kSweeps; ++sweep) {
+    for (std::size_t i = 0; i < response.row_count; ++i) {
+      Row& row = response.rows[i];
+      double opened = 0, by_pull = 0;
+      for (std::size_t t = 0; t < count; ++t) {
+        opened += dot(row.opens[t], change[t]);
+        by_pull += dot(row.opens[t], row.turns[t]);
+      }
+      if (!(by_pull > 1e-9 * response.height * response.height)) {
+        continue;
+      }
+      const double pull = std::max(0.0, row.pull + (row.wanted - row.gap - opened) / by_pull), more = pull - row.pull;
+      row.pull = pull;
+      for (std::size_t t = 0; t < count; ++t) {
+        change[t] = change[t] + more * row.turns[t];
+      }
+    }
+  }
+  for (std::size_t t = 0; t < count; ++t) {
+    turns[t] = vector_of(product(turn_of(shortened(change[t], kRoundMost)), turn_of(turns[t])));
+  }
+}
+
+std::uint32_t limit_turns(const sc_response& response, Double3* turns) {
+  std::uint32_t limited = 0;
+  for (std::size_t t = 0; t < response.turning_count; ++t) {
+    const double budget = response.turning[t].budget;
+    limited += length(turns[t]) > budget ? 1 : 0;
+    turns[t] = shortened(turns[t], budget);
+    const Bend bend = bend_of(response, t);
+    const double back = -dot(turns[t], bend.axis) - 2 * bend.tangent;
+    if (back > 0) {
+      turns[t] = turns[t] + back * bend.axis;
+    }
+  }
+  return limited;
+}
+
+}  // namespace spherechain
