@@ -173,7 +173,8 @@ ExitCode run_play(const PlayOptions& options) {
   say("{}{}\n{}\n{}(radius {}, refit {}, backend {})\n", frames_text(animated), contacts.text(options.motion.name()),
       tally.spheres_text(), tally.times_text(), options.radius, refit,
       on_cuda ? "cuda: refit and all pairs in one" : backend_text(target));
-  if (responder) say("{}", response_text(responder->measures(), animated.frame().height * mm_per_unit(animated.asset())));
+  if (responder)
+    say("{}", response_text(responder->measures(), animated.frame().height * mm_per_unit(animated.asset())));
   if (!options.json.empty()) say("wrote {}\n", options.json);
   return ExitCode::kDone;
 }

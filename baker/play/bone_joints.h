@@ -21,7 +21,9 @@ class BoneJoints {
   // By joint, in its parent's space. Empty where one is sheared, which no joint can be.
   std::vector<sc_transform> joints_of(const Deformation& deformation) const;
   // Where a bone's joint is, in the pose.
-  Vec3 place_of(const Deformation& deformation, std::size_t bone) const { return world(deformation, bone).translation(); }
+  Vec3 place_of(const Deformation& deformation, std::size_t bone) const {
+    return world(deformation, bone).translation();
+  }
   // The bones of such joints.
   std::vector<Affine> bones_of(const std::vector<sc_transform>& joints) const;
 

@@ -50,7 +50,8 @@ Responder::Responder(const AnimatedAsset& animated, Target target, int ahead)
     if (name.ends_with(" forearm") && bone >= 0) elbows_.push_back(static_cast<std::size_t>(bone));
   }
   if (std::find(is_arm_.begin(), is_arm_.end(), true) == is_arm_.end()) {
-    throw Error(ExitCode::kFile, animated.file() + ": has no arms, which the response turns (body parts that end with " +
+    throw Error(ExitCode::kFile, animated.file() +
+                                     ": has no arms, which the response turns (body parts that end with " +
                                      "'upper arm', 'forearm' or 'hand')");
   }
   body_ = Body(asset.model());
@@ -118,7 +119,8 @@ Deformation Responder::respond(int frame) {
   asked.joints = joints.data();
   asked.morph_weights = morphs.empty() ? nullptr : morphs.data();
   asked.morph_weight_count = morphs.size();
-  asked.seconds = starts_clip ? 0 : static_cast<float>(std::clamp(now.seconds - animated_.frame_at(frame - 1).seconds, 0.0, 1.0));
+  asked.seconds =
+      starts_clip ? 0 : static_cast<float>(std::clamp(now.seconds - animated_.frame_at(frame - 1).seconds, 0.0, 1.0));
   asked.target = target_;
   if (ahead_ > 0) {
     ahead = joints_at(animated_.frame_at(last_ahead));

@@ -14,8 +14,8 @@ namespace spherechain::baker {
 // that is at least 3 mm deep on a human of 1.75 m, between parts that do not hang on each other.
 struct ResponseMeasures {
   int frames = 0, faulty_before = 0, faulty_after = 0;
-  int new_faults = 0;              // frames with a fault of two parts that have none in the animation
-  double wrist_acceleration = 1;   // after over before, root mean square
+  int new_faults = 0;             // frames with a fault of two parts that have none in the animation
+  double wrist_acceleration = 1;  // after over before, root mean square
   double elbow_acceleration = 1;
   double largest_jump = 0;         // beyond the animation's, of a wrist or an elbow from frame to frame
   double moved_without_fault = 0;  // of the frames without a fault the share where a wrist moves by .3 %
@@ -26,8 +26,8 @@ struct ResponseMeasures {
 // Plays the frames of a motion through the runtime's response, as a game does. The asset's bones must move it.
 class Responder {
  public:
-  // `ahead`: so many frames are known in advance. Throws Error(kFile) where the asset has no arms, or where bones do not
-  // move it.
+  // `ahead`: so many frames are known in advance. Throws Error(kFile) where the asset has no arms, or where bones do
+  // not move it.
   Responder(const AnimatedAsset& animated, Target target, int ahead);
 
   // The corrected pose of a frame. Frames come in their order; each clip starts afresh.
@@ -54,7 +54,7 @@ class Responder {
   Target target_;
   int ahead_;
   BoneJoints joints_;
-  std::vector<bool> is_arm_;                 // by body part
+  std::vector<bool> is_arm_;                  // by body part
   std::vector<std::size_t> wrists_, elbows_;  // bones
   Body body_;
   Response response_;

@@ -152,6 +152,39 @@ std::vector<std::array<float, 12>> matrices_at(const Asset& asset, std::size_t f
   return out;
 }
 
+std::vector<Transform> joints_at(const Asset& asset, std::size_t frame) {
+  std::vector<Transform> out;
+  for (std::size_t j = 0; j < view_of(asset).joint_count(); ++j) {
+    const JointView joint = view_of(asset).joint(j);
+    const Vec3 above =
+        joint.parent < 0 ? Vec3{} : view_of(asset).joint(static_cast<std::size_t>(joint.parent)).position;
+    double q[4] = {0, 0, 0, 1};
+    for (const Move& move : kMoves) {
+      if (std::strcmp(move.joint, joint.name) != 0) continue;
+      const double t = move.middle + move.width * swing(frame, move.pace, move.start);
+      const auto a = static_cast<std::size_t>(move.axis), b = (a + 1) % 3, c = (a + 2) % 3;
+      const double turned[4] = {q[a] + t * q[3], q[b] + t * q[c], q[c] - t * q[b], q[3] - t * q[a]};
+      q[a] = turned[0];
+      q[b] = turned[1];
+      q[c] = turned[2];
+      q[3] = turned[3];
+    }
+    Transform transform{
+        {joint.position.x - above.x, joint.position.y - above.y, joint.position.z - above.z}, {}, {1, 1, 1}};
+    for (std::size_t k = 0; k < 4; ++k) transform.rotation[k] = static_cast<float>(q[k]);
+    out.push_back(transform);
+  }
+  return out;
+}
+
+std::vector<std::uint32_t> parents_of(const Asset& asset) {
+  std::vector<std::uint32_t> out;
+  for (std::size_t j = 0; j < view_of(asset).joint_count(); ++j) {
+    out.push_back(static_cast<std::uint32_t>(view_of(asset).joint(j).parent));  // -1 is SC_NO_JOINT
+  }
+  return out;
+}
+
 std::vector<float> positions_at(const Doll& doll, const std::vector<std::array<float, 12>>& matrices) {
   std::vector<float> out;
   for (std::size_t v = 0; v < doll.joint_of.size(); ++v) {

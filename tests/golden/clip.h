@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runtime/src/asset/asset_view.h"
+#include "spherechain/pose.h"
 
 namespace spherechain::test {
 
@@ -32,7 +33,11 @@ struct Doll {
 // at its own pace.
 std::vector<std::array<float, 12>> matrices_at(const Asset& asset, std::size_t frame);
 
-// The mesh under those, each vertex moved by one joint.
+// The same as transforms of the joints, each in its parent's space, as an engine animates them; and their parents.
+std::vector<Transform> joints_at(const Asset& asset, std::size_t frame);
+std::vector<std::uint32_t> parents_of(const Asset& asset);
+
+// The mesh under those matrices, each vertex moved by one joint.
 std::vector<float> positions_at(const Doll& doll, const std::vector<std::array<float, 12>>& matrices);
 
 }  // namespace spherechain::test

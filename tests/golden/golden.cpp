@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // golden FOLDER [--print]
-// Hashes the spheres, pairs, skin contacts and penetrations of a clip of 256 frames, on every target and in one to four
-// threads, and compares them with the folder's hashes.txt. They are the same on every machine, with every compiler and
-// at every optimization level.
+// Hashes the spheres, pairs, skin contacts, penetrations and responses of a clip of 256 frames, on every target and in
+// one to four threads, and compares them with the folder's hashes.txt. They are the same on every machine, with every
+// compiler and at every optimization level.
 //
 // Where the runtime's arithmetic changes on purpose, write the hashes anew, look at which lines changed, and commit
 // both:
@@ -17,7 +17,7 @@
 #include "hashes.h"
 #include "jobs.h"
 #include "runtime/src/base/pair_bits.h"
-#include "spherechain/body.h"
+#include "spherechain/response.h"
 
 namespace {
 
@@ -213,6 +213,35 @@ void hash_skin(const Doll& doll, const std::vector<Palette>& clip, HashTable& ta
   }
 }
 
+void hash_response(const Doll& doll, HashTable& table) {
+  const Model model(doll.bytes.data(), 8 * doll.bytes.size(), nullptr, 0, SC_ROWS_3X4);
+  const std::vector<std::uint32_t> parents = parents_of(doll.asset);
+  ResponseDef def;
+  def.parents = parents.data();
+  def.joint_count = parents.size();
+  Body body(model);
+  Response response(body, def);
+  for (const Target target : supported_targets()) {
+    Hash turns;
+    ResponseState state;
+    for (std::size_t f = 0; f < kFrames; ++f) {
+      std::vector<Transform> joints = joints_at(doll.asset, f);
+      ResponseFrame frame;
+      frame.joints = joints.data();
+      frame.seconds = 1.0F / 32;
+      frame.target = target;
+      table.expect(response.respond(state, frame) == SC_OK, "the response fails", sc_target_name(target));
+      std::vector<Sphere> rotations;
+      for (const Transform& joint : joints) {
+        const float* const r = joint.rotation;
+        rotations.push_back({r[0], r[1], r[2], r[3]});
+      }
+      turns.add_array(rotations);
+    }
+    table.add("response", turns, sc_target_name(target));
+  }
+}
+
 std::vector<Palette> clip_of(const Doll& doll) {
   std::vector<Palette> clip;
   for (std::size_t frame = 0; frame < kFrames; ++frame) clip.push_back(matrices_at(doll.asset, frame));
@@ -235,6 +264,7 @@ HashTable hash_all(const Doll& doll, const Doll& paper) {
     }
   }
   hash_skin(doll, clip, table);
+  hash_response(doll, table);
   return table;
 }
 

@@ -4,17 +4,17 @@
 
 #include "spherechain/body.h"
 
-/* Joint rotations in, corrected joint rotations out. A response asks a body, whose pose it sets; both serve one character
- * or many of their model in turn, each with a state of its own. Memory is allocated when it is made. One thread
- * at a time may use a response and its body. */
+/* Joint rotations in, corrected joint rotations out. A response asks a body, whose pose it sets; both serve one
+ * character or many of their model in turn, each with a state of its own. Memory is allocated when it is made. One
+ * thread at a time may use a response and its body. */
 typedef struct sc_response sc_response;
 
 /* Joints are those of sc_model_def.joints, or the asset's bones where it had none. */
 typedef struct sc_response_def {
   const uint32_t* parents SC_ZERO; /* of each joint, before or after it; SC_NO_JOINT: none. Required */
   size_t joint_count SC_ZERO;
-  /* How easily each joint turns, from 0, never, to 1; at most 16 may turn. Null: the joints of upper arms and forearms 1,
-   * of hands 0.3, others 0. */
+  /* How easily each joint turns, from 0, never, to 1; at most 16 may turn. Null: the joints of upper arms and forearms
+   * 1, of hands 0.3, others 0. */
   const float* mobility SC_ZERO;
   const float* budget SC_ZERO; /* the most that each joint is turned, in radians, up to 2; null: 1.05, 60 degrees */
   /* The pairs of body parts that are kept apart, as of sc_query. Null: those that a turn can move against each other,
@@ -24,14 +24,14 @@ typedef struct sc_response_def {
   const sc_allocator* allocator SC_ZERO; /* copied; null: the body's */
 } sc_response_def;
 
-/* A character's state, what its response remembers of the frames before, is so many 64-bit words of the caller's. Zeros:
- * nothing. Set it so at first, and where the animation cuts or the character is moved elsewhere. A copy replays the
- * same, on every machine. */
+/* A character's state, what its response remembers of the frames before, is so many 64-bit words of the caller's.
+ * Zeros: nothing. Set it so at first, and where the animation cuts or the character is moved elsewhere. A copy replays
+ * the same, on every machine. */
 #define SC_RESPONSE_WORDS 480
 
-/* Two spots that are to stay apart. Any solver can use it: if a joint at o turns by the small vector w (the world's axes,
- * radians), the gap grows by w . ((at - o) x normal) if the joint moves `part`, and shrinks by
- * w . ((at_other - o) x normal) if it moves `other`. */
+/* Two spots that are to stay apart. Any solver can use it: if a joint at o turns by the small vector w (the world's
+ * axes, radians), the gap grows by w . ((at - o) x normal) if the joint moves `part`, and shrinks by w . ((at_other -
+ * o) x normal) if it moves `other`. */
 typedef struct sc_contact_row {
   uint32_t part, other;
   uint32_t body;        /* 0: the character's own; k: other is a part of others[k - 1], or SC_FLOOR */
@@ -42,7 +42,8 @@ typedef struct sc_contact_row {
 } sc_contact_row;
 
 typedef struct sc_response_frame {
-  /* Where each joint is in its parent's space. Of those that turn the rotation is replaced; the rest stays as it is. */
+  /* Where each joint is in its parent's space. The rotations of those that turn are replaced; the rest stays as it is.
+   */
   sc_transform* joints SC_ZERO;
   const sc_transform* place SC_ZERO;  /* of the roots in the world; null: the identity */
   const float* morph_weights SC_ZERO; /* as of sc_pose */
@@ -60,9 +61,9 @@ typedef struct sc_response_frame {
   const sc_ground* ground SC_ZERO; /* null: none */
   sc_target target SC_ZERO;        /* the same answers on every one */
   /* out */
-  uint32_t turned SC_ZERO;    /* how many joints were turned; 0: `joints` is as it was, bit for bit */
-  uint32_t at_budget SC_ZERO; /* how many were not turned as far as wanted */
-  float remaining SC_ZERO;    /* the sum of sc_penetration.fault_depth that is left, as far as it is known */
+  uint32_t turned SC_ZERO;            /* how many joints were turned; 0: `joints` is as it was, bit for bit */
+  uint32_t at_budget SC_ZERO;         /* how many were not turned as far as wanted */
+  float remaining SC_ZERO;            /* the sum of sc_penetration.fault_depth that is left, as far as it is known */
   const sc_contact_row* rows SC_ZERO; /* in the corrected pose; valid until the next call */
   size_t row_count SC_ZERO;
 } sc_response_frame;
@@ -80,9 +81,9 @@ SPHERECHAIN_API sc_status sc_create_response(sc_body* body, const sc_response_de
 SPHERECHAIN_API void sc_destroy_response(sc_response* response) SC_NOEXCEPT; /* null is fine */
 
 /* One frame. Sure: where nothing is near and the state is empty, all stays as it is, bit for bit; no joint turns beyond
- * its budget, or by more than 8 radians a second beyond its animation; an elbow that is bent does not bend backward; the
- * faults that it finds are not deeper in sum than the animation's (without `ahead`). Not sure: that no fault is left.
- * Those of trunk and legs stay, and tight places have no way out.
+ * its budget, or away from its animation by more than 8 radians a second; an elbow that is bent does not bend backward;
+ * the faults that it finds are not deeper in sum than the animation's (without `ahead`). Not sure: that no fault is
+ * left. Those of trunk and legs stay, and tight places have no way out.
  *
  * SC_OK; SC_NULL, SC_BAD_VALUE (with SC_FIELD_TRANSFORM: a transform is not finite), or a status of the questions: then
  * joints and state are as they were. */
@@ -105,9 +106,7 @@ struct ResponseState {
 class Response {
  public:
   Response() = default;
-  Response(Body& body, const ResponseDef& def) noexcept {
-    status_ = sc_create_response(body.handle(), &def, &handle_);
-  }
+  Response(Body& body, const ResponseDef& def) noexcept { status_ = sc_create_response(body.handle(), &def, &handle_); }
   Response(Response&& other) noexcept { *this = static_cast<Response&&>(other); }
   Response& operator=(Response&& other) noexcept {
     sc_response* const own = handle_;

@@ -74,7 +74,8 @@ Status gather(sc_body& body, const sc_pose& pose, const sc_transform* place, boo
   const AssetView& asset = asset_of(body);
   given.pose = pose;
   if (pose.bones != nullptr) {
-    const Status status = in_asset_order ? check_bones(asset, pose)
+    const Status status = in_asset_order
+                              ? check_bones(asset, pose)
                               : sc_gather_bones(&body.model->asset, body.model->joint_of_bone, &pose, given.bones);
     if (status != SC_OK) {
       return status;

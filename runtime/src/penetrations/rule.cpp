@@ -28,7 +28,7 @@ constexpr Rule kDefault = [] {
 }();
 
 constexpr double kAnyDepth = 1e30;  // finite: a share of 0 leaves nothing of it
-constexpr double kMargin = 0.65;      // of the depth at which a thin intersection is none any more
+constexpr double kMargin = 0.65;    // of the depth at which a thin intersection is none any more
 constexpr float kEase = 0.7F;       // of what is allowed
 
 // How close two spots are at rest: 1 up to half of the limit, a half at it, 0 from one and a half times it on.

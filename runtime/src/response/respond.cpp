@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A frame of the response: turn the joints as the last frame's rows ask, look for contacts there, and turn them further.
+// A frame of the response: turn the joints as the last frame's rows ask, look for contacts there, and turn them
+// further.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -14,10 +15,10 @@
 namespace spherechain {
 namespace {
 
-constexpr double kRelease = 0.05;         // seconds, in which a turn that nothing asks for shrinks to 1 / e
-constexpr double kFastest = 8;            // radians a second
-constexpr double kNothing = 1e-4;         // a smaller turn ends
-constexpr double kLacks = 0.0006;         // a share of the height: what rows may lack without another round
+constexpr double kRelease = 0.05;  // seconds, in which a turn that nothing asks for shrinks to 1 / e
+constexpr double kFastest = 8;     // radians a second
+constexpr double kNothing = 1e-4;  // a smaller turn ends
+constexpr double kLacks = 0.0006;  // a share of the height: what rows may lack without another round
 constexpr std::uint32_t kRounds = 3, kFirstRounds = 2;
 constexpr Affine kIdentity{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
@@ -132,28 +133,40 @@ Status find_turns(sc_response& response, const sc_response_frame& frame, const s
   return done();
 }
 
-// Gives up what makes it worse: no fault is to be deeper than it is animated.
+// Gives up what makes it worse, at first by half: faults are not to be deeper in sum than they are animated.
 Status take_back(sc_response& response, const sc_response_frame& frame, Turns& turns) {
   const std::size_t count = response.turning_count;
   const bool are_turned = std::any_of(turns, turns + count, [](const Double3& turn) { return !is_zero(turn); });
-  if (!are_turned || !(response.fault_depth > 0)) {
+  const double after = response.fault_depth;
+  if (!are_turned || !(after > 0)) {
     return done();
   }
-  const double after = response.fault_depth;
-  const std::uint32_t row_count = response.row_count;
-  Turns none{};
-  Status status = pose(response, frame, frame.joints, none);
-  status = status == SC_OK ? find_rows(response, frame, 0) : status;
-  if (status != SC_OK) {
+  State rows;
+  keep_rows(response, rows);
+  const auto look_at = [&](const Turns& of) {
+    const Status status = pose(response, frame, frame.joints, of);
+    return status == SC_OK ? find_rows(response, frame, 0) : status;
+  };
+  Turns tried{};
+  response.row_count = 0;  // faults are then measured along their shortest ways
+  Status status = look_at(tried);
+  const double before = response.fault_depth;
+  if (status != SC_OK || before >= after) {
+    status = status == SC_OK ? pose(response, frame, frame.joints, turns) : status;
+    carry_rows(response, rows, frame, 0);
+    response.fault_depth = after;
     return status;
   }
-  if (response.fault_depth < after) {
-    std::fill_n(turns, count, Double3{0, 0, 0});
-    return done();
+  for (std::size_t t = 0; t < count; ++t) {
+    tried[t] = 0.5 * turns[t];
   }
-  response.row_count = row_count;
-  status = pose(response, frame, frame.joints, turns);
-  return status == SC_OK ? find_rows(response, frame, 0) : status;
+  status = look_at(tried);
+  if (status == SC_OK && response.fault_depth > before) {
+    std::fill_n(tried, count, Double3{0, 0, 0});
+    status = look_at(tried);
+  }
+  std::copy_n(tried, count, turns);
+  return status;
 }
 
 // The mean of the turns around this frame, those of the frames that are ahead among them.

@@ -14,7 +14,7 @@ inline constexpr std::size_t kTurningMost = 16, kRowsMost = 32, kOthersMost = 8,
 struct TurningJoint {
   std::uint32_t joint;
   double mobility, budget;  // the budget as turn_of() takes it
-  // Of an arm, else SC_NO_JOINT: the joint at its end; of an elbow, those above and below it.
+  // An arm has a joint at its end, an elbow one above and one below it; else SC_NO_JOINT.
   std::uint32_t wrist = SC_NO_JOINT, above = SC_NO_JOINT, below = SC_NO_JOINT;
   Double3 hinge{0, 0, 0};  // of an elbow at rest, in the axes of the joint's parent; zero: not known
 };
@@ -31,8 +31,8 @@ struct KeptRow {
 // A character's state, as its words keep it.
 struct State {
   std::uint32_t has_begun, row_count;
-  float turns[kTurningMost][3];                                 // of the last frame, or of the one that is ahead
-  float past[2 * kAheadMost][kTurningMost][3];                  // of the frames before, the last first
+  float turns[kTurningMost][3];                 // of the last frame, or of the one that is ahead
+  float past[2 * kAheadMost][kTurningMost][3];  // of the frames before, the last first
   std::uint32_t past_count;
   KeptRow rows[kRowsMost];
 };
@@ -41,11 +41,11 @@ struct State {
 struct Row {
   KeptRow kept;
   Double3 at, at_other, normal;
-  double gap, slide;             // along the normal, and across it
-  double wanted;                 // the gap that it is to have
-  double pull;                   // the solver's, >= 0
-  Double3 opens[kTurningMost];   // how a turn of each joint opens it
-  Double3 turns[kTurningMost];   // how a pull turns each joint
+  double gap, slide;            // along the normal, and across it
+  double wanted;                // the gap that it is to have
+  double pull;                  // the solver's, >= 0
+  Double3 opens[kTurningMost];  // how a turn of each joint opens it
+  Double3 turns[kTurningMost];  // how a pull turns each joint
 };
 
 }  // namespace spherechain
@@ -57,12 +57,12 @@ struct sc_response {
   sc_rule rule;
   double height;  // in the pose
   spherechain::Span<std::uint32_t> parents, order;
-  spherechain::Span<std::uint32_t> joint_of_part;   // SC_NO_JOINT where none moves it
-  spherechain::Span<std::uint32_t> turning_of_part;  // a bit for each turning joint that moves it
+  spherechain::Span<std::uint32_t> joint_of_part;              // SC_NO_JOINT where none moves it
+  spherechain::Span<std::uint32_t> turning_of_part;            // a bit for each turning joint that moves it
   spherechain::Span<std::uint64_t> part_pairs, resting_parts;  // that are kept apart; that no joint turns
   spherechain::TurningJoint turning[spherechain::kTurningMost];
   std::uint32_t turning_count;
-  // Of the frame:
+  // This is of the frame:
   spherechain::Affine place;
   spherechain::Span<sc_transform> joints;                  // with the turns of this round
   spherechain::Span<spherechain::Affine> animated, world;  // of joints: without turns, and with those of this round

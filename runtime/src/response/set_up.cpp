@@ -46,7 +46,7 @@ double mobility_of(const char* name) {
   return ends_with(name, " upper arm") || ends_with(name, " forearm") ? 1 : ends_with(name, " hand") ? kOfHand : 0;
 }
 
-// Of an angle up to a half, the same bits everywhere.
+// The tangent of an angle up to a half, with the same bits everywhere.
 double tangent(double angle) {
   const double s = angle * angle;
   return angle * (1 + s / 3 + 2 * s * s / 15 + 17 * s * s * s / 315);
@@ -131,21 +131,30 @@ Double3 hinge_at_rest(const sc_response& response, const TurningJoint& elbow) {
   return length(across) > kStraight ? unit_into(axes_of(axes), across) : Double3{0, 0, 0};
 }
 
-// Finds arms: a hand that hangs on a forearm, which hangs on an upper arm.
+// The first joint below another; SC_NO_JOINT: there is none.
+std::uint32_t child_of(const sc_response& response, std::uint32_t joint) {
+  const auto found = std::find(response.parents.begin(), response.parents.end(), joint);
+  return found == response.parents.end() ? SC_NO_JOINT : static_cast<std::uint32_t>(found - response.parents.begin());
+}
+
+// Finds arms: a forearm that hangs on an upper arm, and the hand on it. The hand may have no skin of its own.
 void find_arms(sc_response& response) {
   const sc_asset& asset = response.body->model->asset;
-  for (std::size_t hand = 0; hand < response.joint_of_part.size; ++hand) {
-    const sc_part of_hand = sc_asset_part(&asset, hand);
-    if (!ends_with(of_hand.name, " hand") || of_hand.parent < 0) {
-      continue;
-    }
-    const auto forearm = static_cast<std::size_t>(of_hand.parent);
+  const std::size_t parts = response.joint_of_part.size;
+  for (std::size_t forearm = 0; forearm < parts; ++forearm) {
     const std::int32_t upper = sc_asset_part(&asset, forearm).parent;
-    if (!ends_with(sc_asset_part(&asset, forearm).name, " forearm") || upper < 0) {
+    if (!ends_with(sc_asset_part(&asset, forearm).name, " forearm") || upper < 0 ||
+        response.joint_of_part[forearm] == SC_NO_JOINT) {
       continue;
     }
     const std::uint32_t shoulder = response.joint_of_part[static_cast<std::size_t>(upper)],
-                        elbow = response.joint_of_part[forearm], wrist = response.joint_of_part[hand];
+                        elbow = response.joint_of_part[forearm];
+    std::uint32_t wrist = child_of(response, elbow);
+    for (std::size_t hand = 0; hand < parts; ++hand) {
+      const sc_part of_hand = sc_asset_part(&asset, hand);
+      const bool is_its = ends_with(of_hand.name, " hand") && of_hand.parent == static_cast<std::int32_t>(forearm);
+      wrist = is_its && response.joint_of_part[hand] != SC_NO_JOINT ? response.joint_of_part[hand] : wrist;
+    }
     for (std::size_t t = 0; t < response.turning_count; ++t) {
       TurningJoint& joint = response.turning[t];
       joint.wrist = joint.joint == shoulder || joint.joint == elbow || joint.joint == wrist ? wrist : joint.wrist;
@@ -183,9 +192,9 @@ void find_pairs(sc_response& response, const sc_response_def& def) {
       const auto is_asked_as = [&](std::size_t bit) { return (def.part_pairs[bit / 64] >> bit % 64 & 1) != 0; };
       const bool are_joined = sc_asset_part(&asset, a).parent == static_cast<std::int32_t>(b) ||
                               sc_asset_part(&asset, b).parent == static_cast<std::int32_t>(a);
-      const bool is_asked = response.turning_of_part[a] != response.turning_of_part[b] &&
-                            (def.part_pairs == nullptr ? !are_joined
-                                                       : is_asked_as(a * parts + b) || is_asked_as(b * parts + a));
+      const bool is_asked =
+          response.turning_of_part[a] != response.turning_of_part[b] &&
+          (def.part_pairs == nullptr ? !are_joined : is_asked_as(a * parts + b) || is_asked_as(b * parts + a));
       response.part_pairs[(a * parts + b) / 64] |= std::uint64_t{is_asked} << (a * parts + b) % 64;
     }
   }

@@ -20,7 +20,8 @@ Quaternion product(const Quaternion& a, const Quaternion& b) {
 }
 
 Double3 turn(const Affine& by, const Double3& v) {
-  return {by.m[0][0] * v.x + by.m[0][1] * v.y + by.m[0][2] * v.z, by.m[1][0] * v.x + by.m[1][1] * v.y + by.m[1][2] * v.z,
+  return {by.m[0][0] * v.x + by.m[0][1] * v.y + by.m[0][2] * v.z,
+          by.m[1][0] * v.x + by.m[1][1] * v.y + by.m[1][2] * v.z,
           by.m[2][0] * v.x + by.m[2][1] * v.y + by.m[2][2] * v.z};
 }
 

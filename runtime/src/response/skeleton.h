@@ -9,8 +9,8 @@
 
 namespace spherechain {
 
-// A turn by the vector v: about v, by twice the arctangent of half its length. It needs no sine, so that it has the same
-// bits everywhere; for small angles it is the angle.
+// A turn by the vector v: about v, by twice the arctangent of half its length. It needs no sine, so that it has the
+// same bits everywhere; for small angles it is the angle.
 Quaternion turn_of(const Double3& v);
 Double3 vector_of(const Quaternion& q);
 Quaternion product(const Quaternion& a, const Quaternion& b);

@@ -8,10 +8,10 @@ namespace spherechain {
 namespace {
 
 constexpr std::size_t kSweeps = 40;
-constexpr double kRoundMost = 0.4;    // radians that a joint turns in a round
-constexpr double kOffHinge = 0.25;    // of an elbow's mobility, about other axes than its own
-constexpr double kStraight = 0.1;     // the sine of a bend below which an elbow's axis is taken from the rest pose
-constexpr double kKeepsWrist = 100;   // how dear it is to move the wrist by a metre of a human, against a radian
+constexpr double kRoundMost = 0.4;   // radians that a joint turns in a round
+constexpr double kOffHinge = 0.25;   // of an elbow's mobility, about other axes than its own
+constexpr double kStraight = 0.1;    // the sine of a bend below which an elbow's axis is taken from the rest pose
+constexpr double kKeepsWrist = 100;  // how dear it is to move the wrist by a metre of a human, against a radian
 
 Double3 place_of(const Affine& joint) { return {joint.m[0][3], joint.m[1][3], joint.m[2][3]}; }
 
@@ -65,7 +65,7 @@ Bend bend_of(const sc_response& response, std::size_t turning) {
   return normalize(out.axis) ? out : Bend{};
 }
 
-// What the joints are and how they turn, in the pose of this round.
+// The joints in the pose of this round.
 struct Joints {
   Affine axes[kTurningMost];
   Double3 hinge[kTurningMost];
@@ -179,10 +179,10 @@ void solve_rows(sc_response& response, const Double3* rest, Double3* turns) {
     const TurningJoint& joint = response.turning[t];
     joints.axes[t] = turning_axes(response, response.world.data, t);
     joints.hinge[t] = bend_of(response, t).axis;
-    joints.lever[t] = joint.wrist == SC_NO_JOINT
-                          ? Double3{0, 0, 0}
-                          : into(joints.axes[t], place_of(response.world[joint.wrist]) -
-                                                     place_of(response.world[joint.joint]));
+    joints.lever[t] =
+        joint.wrist == SC_NO_JOINT
+            ? Double3{0, 0, 0}
+            : into(joints.axes[t], place_of(response.world[joint.wrist]) - place_of(response.world[joint.joint]));
     change[t] = rest[t] - turns[t];
   }
   for (std::size_t i = 0; i < response.row_count; ++i) {
