@@ -16,13 +16,10 @@ namespace {
 // The triangles, of whatever spheres, that intersect in the rest pose and share no corner there; sorted.
 baker::Layers::Pairs find_rest_contacts(const Model& model, const std::vector<float>& rest) {
   std::vector<std::uint64_t> nothing_ignored(sc_pair_words(&model.asset()), 0);
-  Filter filter;
-  filter.ignored = nothing_ignored.data();
-  filter.ignored_words = nothing_ignored.size();
   Query query;
   query.scope = SC_SCOPE_ALL;
-  query.detail = SC_DETAIL_FULL;
-  query.filter = &filter;
+  query.full = 1;
+  query.ignored_pairs = nothing_ignored.data();
   Pose pose;
   pose.vertices = rest.data();
   pose.vertex_count = rest.size() / 3;

@@ -54,9 +54,9 @@ void SkinPlayer::set_pose(const sc_pose& pose) {
   check_runtime(body_.set_pose(pose));
 }
 
-Query SkinPlayer::query(Detail detail) const {
+Query SkinPlayer::query(bool is_full) const {
   Query out;
-  out.detail = detail;
+  out.full = is_full ? 1 : 0;
   out.target = target_;
   out.scope = SC_SCOPE_LAYERS;
   out.classes = ~0U;
@@ -64,7 +64,7 @@ Query SkinPlayer::query(Detail detail) const {
 }
 
 std::size_t SkinPlayer::count_contacts() {
-  Query asked = query(SC_DETAIL_QUICK);
+  Query asked = query(false);
   asked.scope = SC_SCOPE_APART;
   const Contacts found = body_.contacts(asked);
   check_runtime(body_.status());
@@ -72,7 +72,7 @@ std::size_t SkinPlayer::count_contacts() {
 }
 
 Span<const TriangleContact> SkinPlayer::triangles(const SkinPlayer* other, Scope scope) {
-  Query asked = query(SC_DETAIL_FULL);
+  Query asked = query(true);
   asked.scope = scope;
   for (;;) {
     const Contacts found = other == nullptr ? body_.contacts(asked) : body_.contacts(other->body_, asked);
@@ -105,7 +105,7 @@ const std::vector<Penetration>& SkinPlayer::find_next(const SkinPlayer* other, Q
 }
 
 const std::vector<Penetration>& SkinPlayer::measure_quickly(const PartPairBits* pairs, bool is_next) {
-  Query asked = query(SC_DETAIL_QUICK);
+  Query asked = query(false);
   asked.part_pairs = pairs == nullptr ? nullptr : pairs->data();
   return find_next(nullptr, asked, is_next);
 }
@@ -117,7 +117,7 @@ const std::vector<Penetration>& SkinPlayer::measure_as_games() {
 }
 
 std::optional<Penetration> SkinPlayer::measure_parts(std::uint32_t part_a, std::uint32_t part_b) {
-  Query asked = query(SC_DETAIL_FULL);
+  Query asked = query(true);
   const PartPairBits pairs = part_pairs(
       asset_, [&](std::uint32_t a, std::uint32_t b) { return std::minmax(a, b) == std::minmax(part_a, part_b); });
   asked.part_pairs = pairs.data();

@@ -79,9 +79,9 @@ class SkinPlayer {
 
   // Penetrations of all classes in full, sorted by body parts. `is_next`: the pose follows the last one measured so,
   // and directions may follow that one's. A list holds until the next question.
-  const std::vector<Penetration>& measure(bool is_next) { return find_next(nullptr, query(SC_DETAIL_FULL), is_next); }
+  const std::vector<Penetration>& measure(bool is_next) { return find_next(nullptr, query(true), is_next); }
   const std::vector<Penetration>& measure(const SkinPlayer& other, bool is_next) {
-    return find_next(&other, query(SC_DETAIL_FULL), is_next);
+    return find_next(&other, query(true), is_next);
   }
   // The same between parts that are no layers of one place, without history: all that a game sees by default.
   const std::vector<Penetration>& measure_as_games();
@@ -92,7 +92,7 @@ class SkinPlayer {
   std::optional<Penetration> measure_parts(std::uint32_t part_a, std::uint32_t part_b);
 
  private:
-  Query query(Detail detail) const;
+  Query query(bool is_full) const;
   Span<const TriangleContact> triangles(const SkinPlayer* other, Scope scope);
   const std::vector<Penetration>& find_next(const SkinPlayer* other, Query query, bool is_next);
   const std::vector<Penetration>& find(const SkinPlayer* other, Query query);

@@ -12,13 +12,13 @@
 namespace spherechain::cuda {
 namespace {
 
-// Pairs that the filter, or without one the asset, does not ignore.
+// Pairs that the caller, or else the asset, does not ignore.
 struct WantedPairs {
   Span<const std::uint64_t> ignored;
 
-  WantedPairs(const AssetView& asset, const Filter* filter) : ignored(asset.ignored()) {
-    if (filter != nullptr) {
-      ignored = {filter->ignored, filter->ignored_words};
+  WantedPairs(const AssetView& asset, const std::uint64_t* ignored_pairs) : ignored(asset.ignored()) {
+    if (ignored_pairs != nullptr) {
+      ignored.data = ignored_pairs;
     }
   }
   bool operator()(std::uint32_t a, std::uint32_t b) const { return !test_bit(ignored, ignored_bit(a, b)); }
@@ -124,7 +124,8 @@ std::uint32_t middle_sphere(Span<const RestSphere> spheres) {
   return best;
 }
 
-Status check(const Asset& asset, Radius radius, const Filter* filter, const std::uint64_t* words, std::size_t count) {
+Status check(const Asset& asset, Radius radius, const std::uint64_t* ignored_pairs, const std::uint64_t* words,
+             std::size_t count) {
   const Status status = first_of({
       {!view_of(asset).is_open(), SC_NOT_OPEN, SC_FIELD_ASSET},
       {!is_radius(radius), SC_BAD_VALUE, SC_FIELD_RADIUS},
@@ -132,11 +133,11 @@ Status check(const Asset& asset, Radius radius, const Filter* filter, const std:
       {reinterpret_cast<std::uintptr_t>(words) % alignof(Float4) != 0, SC_MISALIGNED, SC_FIELD_TABLE},
       {count < crowd_table_words(asset), SC_TOO_SMALL, SC_FIELD_TABLE},
   });
-  return status == SC_OK && filter != nullptr ? check_filter(view_of(asset), *filter) : status;
+  return status == SC_OK ? check_list(ignored_pairs, 0, SC_FIELD_IGNORED_PAIRS) : status;
 }
 
 // Without memory only counts its words.
-void fill(const AssetView& asset, Radius radius, const Filter* filter, TableMemory& memory) {
+void fill(const AssetView& asset, Radius radius, const std::uint64_t* ignored_pairs, TableMemory& memory) {
   const auto n = static_cast<std::uint32_t>(asset.spheres().size);
   std::uint32_t start = 0;
   TableHeader places{};
@@ -155,7 +156,7 @@ void fill(const AssetView& asset, Radius radius, const Filter* filter, TableMemo
   header.sphere_count = n;
   header.bit_words = static_cast<std::uint32_t>(words_for(pairs_of(n)));
   header.origin_sphere = middle_sphere(asset.spheres());
-  const WantedPairs wanted(asset, filter);
+  const WantedPairs wanted(asset, ignored_pairs);
   const Span<const RestPair> rest = asset.rest_pairs(radius);
   const auto is_tested = [&](auto a, auto b) { return wanted(a, b) && !is_rest_pair(rest, a, b); };
   for (const RestPair& pair : rest) {
@@ -177,12 +178,12 @@ std::size_t crowd_table_words(const Asset& asset) noexcept {
   return memory.used();
 }
 
-Status prepare_crowd(const Asset& asset, Radius radius, const Filter* filter, std::uint64_t* words,
+Status prepare_crowd(const Asset& asset, Radius radius, const std::uint64_t* ignored_pairs, std::uint64_t* words,
                      std::size_t word_count) noexcept {
-  const Status status = check(asset, radius, filter, words, word_count);
+  const Status status = check(asset, radius, ignored_pairs, words, word_count);
   if (status == SC_OK) {
     TableMemory memory(words);
-    fill(view_of(asset), radius, filter, memory);
+    fill(view_of(asset), radius, ignored_pairs, memory);
   }
   return status;
 }

@@ -114,7 +114,7 @@ void HostCrowd::close() noexcept {
   memory_ = nullptr;
 }
 
-Status HostCrowd::open(const Asset& asset, Radius radius, const Filter* filter, std::size_t instances,
+Status HostCrowd::open(const Asset& asset, Radius radius, const std::uint64_t* ignored_pairs, std::size_t instances,
                        std::size_t pair_capacity) noexcept {
   close();
   if (instances == 0 || instances > 0x7FFFFFFF || pair_capacity == 0) {
@@ -124,7 +124,7 @@ Status HostCrowd::open(const Asset& asset, Radius radius, const Filter* filter, 
   try {
     memory_ = new Memory;
     memory_->host_table.resize(crowd_table_words(asset) / 2);
-    status = prepare_crowd(asset, radius, filter, memory_->table(), 2 * memory_->host_table.size());
+    status = prepare_crowd(asset, radius, ignored_pairs, memory_->table(), 2 * memory_->host_table.size());
     memory_->host_starts.resize(instances);
     memory_->host_counts.resize(instances);
     memory_->host_pairs.resize(pair_capacity);

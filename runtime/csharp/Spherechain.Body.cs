@@ -56,7 +56,7 @@ namespace Spherechain
         }
     }
 
-    /// <summary>Body parts that touch, and with Detail.Full spheres and triangles, too. Sorted, each once.</summary>
+    /// <summary>Body parts that touch, and with Query.Full spheres and triangles, too. Sorted, each once.</summary>
     public sealed class Contacts
     {
         public readonly Results<PartContact> Parts = new Results<PartContact>();
@@ -79,32 +79,29 @@ namespace Spherechain
         public float Height;
     }
 
-    /// <summary>Which pairs of spheres a question about one body leaves out: the asset's own at first.</summary>
-    public sealed unsafe class Filter
+    /// <summary>The pairs of spheres that a question about one body leaves out: the asset's own at first.</summary>
+    public sealed unsafe class IgnoredPairs
     {
         internal readonly ulong[] Words;
         readonly Model model;
 
-        public Filter(Model model)
+        public IgnoredPairs(Model model)
         {
             Text.Require(model, Field.Asset, "the model");
             this.model = model;
             Words = new ulong[Text.Int(Native.sc_pair_words(model.Asset))];
-            fixed (ulong* words = Words)
-            {
-                Native.Filter filter = View(words);
-                Done(Native.sc_reset_filter(model.Asset, &filter));
-            }
+            ulong* own = Native.sc_asset_get_info(model.Asset).IgnoredPairs;
+            for (int i = 0; i < Words.Length; ++i) Words[i] = own[i];
+            GC.KeepAlive(model);
         }
 
         /// <summary>`isIgnored` false reports the pair, also where the asset itself ignores it.</summary>
         public void IgnorePair(uint a, uint b, bool isIgnored)
         {
-            fixed (ulong* words = Words)
-            {
-                Native.Filter filter = View(words);
-                Done(Native.sc_ignore_pair(model.Asset, &filter, a, b, isIgnored ? 1 : 0));
-            }
+            ulong low = Math.Min(a, b), high = Math.Max(a, b), bit = high * (high - 1) / 2 + low;
+            if (a == b || high >= (ulong)model.SphereCount) throw new SpherechainException(Code.BadValue, Field.Index, "two different spheres");
+            ulong mask = 1UL << (int)(bit % 64);
+            Words[bit / 64] = isIgnored ? Words[bit / 64] | mask : Words[bit / 64] & ~mask;
         }
 
         /// <summary>Each pair of a sphere of one body part with a sphere of the other.</summary>
@@ -112,22 +109,8 @@ namespace Spherechain
         {
             fixed (ulong* words = Words)
             {
-                Native.Filter filter = View(words);
-                Done(Native.sc_ignore_parts(model.Asset, &filter, Text.Size(part), Text.Size(other), isIgnored ? 1 : 0));
+                Text.Check(Native.sc_ignore_parts(model.Asset, words, Text.Size(part), Text.Size(other), isIgnored ? 1 : 0));
             }
-        }
-
-        internal Native.Filter View(ulong* words)
-        {
-            Native.Filter filter = default(Native.Filter);
-            filter.Ignored = words;
-            filter.IgnoredWords = Text.Size(Words.Length);
-            return filter;
-        }
-
-        void Done(Status status)
-        {
-            Text.Check(status);
             GC.KeepAlive(model);
         }
     }
@@ -138,10 +121,10 @@ namespace Spherechain
         public const uint AllClasses = uint.MaxValue;
 
         public Scope Scope;
-        /// <summary>Full: penetrations that are no faults in full, too; contacts of spheres and triangles.</summary>
-        public Detail Detail;
+        /// <summary>Penetrations that are no faults are measured in full, too; contacts are of spheres and triangles.</summary>
+        public bool Full;
         /// <summary>Of a body with itself; null: the asset's ignored pairs.</summary>
-        public Filter Filter;
+        public IgnoredPairs IgnoredPairs;
         /// <summary>Model.PartSet(): of two bodies, parts that meet nothing: a hand that holds the other.</summary>
         public ulong[] IgnoredParts, IgnoredPartsOfOther;
         /// <summary>Model.PairSet(): of contacts and penetrations, the pairs of parts that are asked about; null: all.</summary>
@@ -332,16 +315,15 @@ namespace Spherechain
 
         void AskNative(Question question, IntPtr other, ref Query query, Results<Penetration> list, Ground ground)
         {
-            fixed (ulong* words = query.Filter == null ? null : query.Filter.Words)
+            fixed (ulong* ignoredPairs = query.IgnoredPairs == null ? null : query.IgnoredPairs.Words)
             fixed (ulong* ignored = query.IgnoredParts, ignoredOfOther = query.IgnoredPartsOfOther, pairs = query.PartPairs)
             fixed (Penetration* previous = query.Previous == null ? null : query.Previous.Items)
             {
-                Native.Filter filter = query.Filter == null ? default(Native.Filter) : query.Filter.View(words);
                 Rule rule = query.Rule.GetValueOrDefault();
                 Native.Query q = default(Native.Query);
                 q.Scope = query.Scope;
-                q.Detail = query.Detail;
-                q.Filter = query.Filter == null ? null : &filter;
+                q.Full = query.Full ? 1 : 0;
+                q.IgnoredPairs = ignoredPairs;
                 q.IgnoredParts = ignored;
                 q.IgnoredPartsOfOther = ignoredOfOther;
                 q.PartPairs = pairs;
@@ -372,9 +354,10 @@ namespace Spherechain
                 }
                 else if (question == Question.Steps)
                 {
-                    Native.Steps found;
-                    status = Native.sc_find_steps(handle, other, &q, &found);
-                    steps.CopyFrom(found.Items, found.Count, found.Count);
+                    StepContact* found;
+                    UIntPtr count;
+                    status = Native.sc_find_steps(handle, other, &q, &found, &count);
+                    steps.CopyFrom(found, count, count);
                 }
                 else
                 {

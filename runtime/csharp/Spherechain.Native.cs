@@ -40,7 +40,7 @@ namespace Spherechain
         Null = 2,
         /// <summary>the field's memory is not aligned as its type</summary>
         Misaligned = 3,
-        /// <summary>the field has fewer entries than the call needs, or a filter's buffer another number</summary>
+        /// <summary>the field has fewer entries than the call needs</summary>
         TooSmall = 4,
         /// <summary>a stride below the size of an entry, or no multiple of 4</summary>
         BadStride = 5,
@@ -95,7 +95,7 @@ namespace Spherechain
         Target = 12,
         Spheres = 13,
         Table = 14,
-        Filter = 15,
+        IgnoredPairs = 15,
         Pairs = 16,
         Bits = 17,
         Scope = 18,
@@ -129,13 +129,6 @@ namespace Spherechain
         Allocator = 46,
         Query = 47,
         PartPairs = 48,
-    }
-
-    public enum Side : int  // sc_side
-    {
-        None = 0,
-        Left = 1,
-        Right = 2,
     }
 
     public enum PenetrationClass : int  // sc_penetration_class
@@ -194,12 +187,6 @@ namespace Spherechain
         Columns3x4 = 4,
     }
 
-    public enum Detail : int  // sc_detail
-    {
-        Quick = 0,
-        Full = 1,
-    }
-
     public struct Vec3  // sc_vec3
     {
         public float X, Y, Z;
@@ -228,8 +215,8 @@ namespace Spherechain
         public float Radius;
         /// <summary>&gt;= 0</summary>
         public float DetectRadius;
-        /// <summary>of a torso sphere: the half that it stands for</summary>
-        public Side Side;
+        /// <summary>of a torso sphere: the half that it stands for, as sc_part.side</summary>
+        public int Side;
         /// <summary>below sc_asset_info.region_count</summary>
         public uint Region;
         /// <summary>of a torso sphere: its height, from the bottom up; else -1</summary>
@@ -404,13 +391,15 @@ namespace Spherechain
 #endif
         const CallingConvention Cdecl = CallingConvention.Cdecl;
 
-        public const uint AbiVersion = 15;
+        public const uint AbiVersion = 16;
         public const uint AssetAlignment = 8;
         public const uint Floor = 0xFFFFFFFFu;
         public const uint NoJoint = 0xFFFFFFFFu;
         public const uint NoPart = 0xFFFFFFFFu;
         public const uint NoTriangle = 0xFFFFFFFFu;
         public const uint RuleVersion = 4;
+        public const uint SideLeft = 1;
+        public const uint SideRight = 2;
         // Left out: SC_WHOLE_SOURCE: its width depends on the machine: pass new UIntPtr(UIntPtr.Size == 8 ? ulong.MaxValue : uint.MaxValue).
 
         public unsafe struct Asset  // sc_asset
@@ -428,7 +417,8 @@ namespace Spherechain
         public unsafe struct Part  // sc_part
         {
             public byte* Name;
-            public Side Side;
+            /// <summary>the character's own: SC_SIDE_LEFT, SC_SIDE_RIGHT, or 0: neither</summary>
+            public int Side;
             /// <summary>the bone that it follows; -1 where no bone moves it</summary>
             public int Bone;
             /// <summary>the part that it hangs on; -1: none</summary>
@@ -458,12 +448,8 @@ namespace Spherechain
             /// <summary>source units</summary>
             public float Height;
             public float MetresPerUnit;
-        }
-
-        public unsafe struct Filter  // sc_filter
-        {
-            public ulong* Ignored;
-            public UIntPtr IgnoredWords;
+            /// <summary>the pairs of ignored_pair_count; sc_pair_words() words of the asset</summary>
+            public ulong* IgnoredPairs;
         }
 
         public unsafe struct Pose  // sc_pose
@@ -524,8 +510,8 @@ namespace Spherechain
         public unsafe struct Query  // sc_query
         {
             public Scope Scope;
-            public Detail Detail;
-            public Filter* Filter;
+            public int Full;
+            public ulong* IgnoredPairs;
             public ulong* IgnoredParts;
             public ulong* IgnoredPartsOfOther;
             public ulong* PartPairs;
@@ -570,12 +556,6 @@ namespace Spherechain
             public UIntPtr Count, Total;
         }
 
-        public unsafe struct Steps  // sc_steps
-        {
-            public StepContact* Items;
-            public UIntPtr Count;
-        }
-
         public unsafe struct Ground  // sc_ground
         {
             public Vec3 Up;
@@ -596,7 +576,8 @@ namespace Spherechain
             public UIntPtr InstanceStride;
             public Radius Radius;
             public Target Target;
-            public Filter* Filter;
+            /// <summary>sc_pair_words() words; null: the asset's ignored pairs</summary>
+            public ulong* IgnoredPairs;
             /// <summary>sc_crowd_scratch_words() words</summary>
             public ulong* Scratch;
             public UIntPtr ScratchWords;
@@ -654,9 +635,7 @@ namespace Spherechain
         [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_field_name(Field field);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_target_name(Target target);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Target* sc_supported_targets(UIntPtr* count);
-        [DllImport(Library, CallingConvention = Cdecl)] public static extern uint sc_abi_version();
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_asset_open(Asset* asset, uint abi, void* data, UIntPtr size, byte* message, UIntPtr message_size);
-        [DllImport(Library, CallingConvention = Cdecl)] public static extern int sc_asset_is_open(Asset* asset);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern AssetInfo sc_asset_get_info(Asset* asset);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern RestSphere sc_asset_sphere(Asset* asset, UIntPtr index);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Bone sc_asset_bone(Asset* asset, UIntPtr index);
@@ -666,14 +645,12 @@ namespace Spherechain
         [DllImport(Library, CallingConvention = Cdecl)] public static extern SourceBuffer sc_asset_source_buffer(Asset* asset, UIntPtr index);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern ulong sc_hash_positions(float* positions, UIntPtr count, UIntPtr stride);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_check_source(Asset* asset, UIntPtr buffer, float* positions, UIntPtr count, UIntPtr stride);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_pair_words(Asset* asset);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_part_words(Asset* asset);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_ignore_parts(Asset* asset, ulong* ignored_pairs, UIntPtr part, UIntPtr other, int ignored);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Rule sc_default_rule();
         [DllImport(Library, CallingConvention = Cdecl)] public static extern PenetrationClass sc_classify(Rule* rule, Measures* measures);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_penetration_class_name(PenetrationClass kind);
-        [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_pair_words(Asset* asset);
-        [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_part_words(Asset* asset);
-        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_reset_filter(Asset* asset, Filter* filter);
-        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_ignore_pair(Asset* asset, Filter* filter, uint a, uint b, int ignored);
-        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_ignore_parts(Asset* asset, Filter* filter, UIntPtr part, UIntPtr other, int ignored);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_bind_joints(Asset* asset, Bone* joints, UIntPtr joint_count, MatrixLayout inverse_bind_layout, uint* joint_of_bone, UIntPtr capacity, byte* message, UIntPtr message_size);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_gather_bones(Asset* asset, uint* joint_of_bone, Pose* palette, float* bones);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_place_bones(JointTransform* transform, float* bones, UIntPtr bone_count);
@@ -689,7 +666,7 @@ namespace Spherechain
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_penetrations(IntPtr body, IntPtr other, Query* query, Penetrations* found);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_contacts(IntPtr body, IntPtr other, Query* query, Contacts* found);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_sphere_pairs(IntPtr body, Query* query, SpherePairs* found);
-        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_steps(IntPtr body, IntPtr other, Query* query, Steps* found);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_steps(IntPtr body, IntPtr other, Query* query, StepContact** steps, UIntPtr* count);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_in_ground(IntPtr body, Ground* ground, Query* query, Penetrations* found);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_get_bounds(IntPtr body, Vec3* low, Vec3* high);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_detect_crowd(CrowdJob* job);

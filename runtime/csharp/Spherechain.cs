@@ -199,7 +199,8 @@ namespace Spherechain
         public int PartBone(int part) { return Part(part).Bone; }
         /// <summary>The part that a part hangs on, or -1.</summary>
         public int PartParent(int part) { return Part(part).Parent; }
-        public Side PartSide(int part) { return Part(part).Side; }
+        /// <summary>Native.SideLeft or Native.SideRight, the character's own; 0: neither.</summary>
+        public int PartSide(int part) { return Part(part).Side; }
         /// <summary>What a triangle of the source belongs to; Native.NoPart where it was left out of the skin.</summary>
         public Triangle Triangle(uint triangle) { return Kept(Native.sc_get_triangle(Handle, triangle)); }
         /// <summary>A sphere at rest, in source units.</summary>

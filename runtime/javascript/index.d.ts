@@ -104,13 +104,13 @@ export interface Model {
    * needs much memory. `maxTriangles`: room for pairs of triangles; half of the triangles, and at least 4,096, if left out.
    * `maxPenetrations`: 128 if left out. */
   createBody(options?: { largestOther?: Model; findsSteps?: boolean; maxTriangles?: number; maxPenetrations?: number }): Body;
-  createFilter(): Filter;
-  /** Frees the memory, of its bodies and filters too. What is not disposed of stays until the page goes. */
+  createIgnoredPairs(): IgnoredPairs;
+  /** Frees the memory, of its bodies and ignored pairs too. What is not disposed of stays until the page goes. */
   dispose(): void;
 }
 
-/** Which pairs of spheres a question about one body leaves out: the asset's own at first. */
-export interface Filter {
+/** The pairs of spheres that a question about one body leaves out: the asset's own at first. */
+export interface IgnoredPairs {
   /** `isIgnored` false reports the pair, also where the asset ignores it. */
   ignorePair(a: number, b: number, isIgnored?: boolean): void;
   /** Each pair of a sphere of one body part with a sphere of the other; the same part twice: the pairs within it. */
@@ -137,7 +137,7 @@ export interface Body {
   penetrations(other: Body, query?: Query): Results<Penetration>;
   /** Which parts are below a plane, whose points p have up . p = height: `other` is -1. `up`: of unit length; y if left out. */
   below(ground: { up?: ArrayLike<number>; height?: number }, query?: Query): Results<Penetration>;
-  /** Which body parts' skins intersect, exactly; with detail 'full' which spheres and triangles, too. Sorted, each once. */
+  /** Which body parts' skins intersect, exactly; with `full` which spheres and triangles, too. Sorted, each once. */
   contacts(query?: Query): Contacts;
   contacts(other: Body, query?: Query): Contacts;
   /** Where the spheres are, and which overlap: a cheap alarm, with false ones. `spheres`: x, y, z, radius each; `pairs`: two indices each. */
@@ -158,9 +158,9 @@ export interface Body {
 export interface Query {
   /** 'apart', if left out: without the folds of neighbouring spheres at elbows and knees, and without layers of one place; 'layers': with these; 'neighbours': the folds alone, 40 times dearer. */
   scope?: 'apart' | 'neighbours' | 'all' | 'layers';
-  /** 'full': penetrations that are no faults are measured in full, too. The faults are the same. Contacts list spheres and triangles. */
-  detail?: 'quick' | 'full';
-  filter?: Filter;
+  /** Penetrations that are no faults are measured in full, too. The faults are the same. Contacts list spheres and triangles. */
+  full?: boolean;
+  ignoredPairs?: IgnoredPairs;
   /** Parts that meet nothing, in questions about two bodies and the ground: a hand that holds the other. */
   ignoredParts?: readonly number[];
   ignoredPartsOfOther?: readonly number[];

@@ -67,7 +67,7 @@ void fight(const std::vector<char>& file, const samples::GltfCharacter& clips) {
   const Ground floor{{0, 1, 0}, 0, nullptr, nullptr};  // in a glTF file y is up
   Query all;
   all.classes = ~0U;  // touches, too
-  all.detail = SC_DETAIL_FULL;
+  all.full = 1;
   const double duration = clips.duration(0);
   Score score;
   std::size_t frames = 0;

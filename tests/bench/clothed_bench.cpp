@@ -59,11 +59,11 @@ class Character {
       pose.bone_count = palette.size() / 12;
       pose.bone_layout = SC_ROWS_3X4;
       std::size_t faults = 0;
-      const auto ask = [&](Scope scope, Detail detail, bool measures) {
+      const auto ask = [&](Scope scope, int full, bool measures) {
         Query query;
         query.scope = scope;
-        query.detail = detail;
-        query.classes = detail == SC_DETAIL_FULL ? ~0U : 0;
+        query.full = full;
+        query.classes = full != 0 ? ~0U : 0;
         return microseconds([&] {
           body.set_pose(pose);
           if (measures) {
@@ -73,10 +73,10 @@ class Character {
           }
         });
       };
-      sum.apart += ask(SC_SCOPE_APART, SC_DETAIL_QUICK, false);
-      sum.layers += ask(SC_SCOPE_LAYERS, SC_DETAIL_QUICK, false);
-      sum.full += ask(SC_SCOPE_LAYERS, SC_DETAIL_FULL, true);
-      sum.quick += ask(SC_SCOPE_APART, SC_DETAIL_QUICK, true);
+      sum.apart += ask(SC_SCOPE_APART, 0, false);
+      sum.layers += ask(SC_SCOPE_LAYERS, 0, false);
+      sum.full += ask(SC_SCOPE_LAYERS, 1, true);
+      sum.quick += ask(SC_SCOPE_APART, 0, true);
       const bool is_alarmed = body.sphere_pairs().total > 0;
       alarms += is_alarmed && faults == 0 ? 1 : 0;
       faulty += faults > 0 ? 1 : 0;

@@ -58,7 +58,7 @@ public static class ApiTest
             Check(model.PartNames.Contains("left hand") && model.PartNames.Contains("head"), "names of parts");
             Check(model.RegionNames.Length == model.RegionCount && model.RegionNames[0].Length > 0, "names of regions");
             int hand = Array.IndexOf(model.PartNames, "left hand");
-            Check(model.PartSide(hand) == Side.Left && model.PartBone(hand) >= 0, "the left hand");
+            Check(model.PartSide(hand) == Native.SideLeft && model.PartBone(hand) >= 0, "the left hand");
             Check(model.PartNames[model.PartParent(hand)] == "left forearm", "the hand hangs on the forearm");
             Check(model.PartJoint((uint)hand) == model.PartBone(hand), "without joints they are the bones");
             Check(model.PartName((uint)hand) == "left hand" && model.PartName(Native.Floor) == null, "a name");
@@ -191,14 +191,14 @@ public static class ApiTest
         using (Body body = new Body(model, findsSteps: true))
         using (Body narrow = new Body(model, maxPenetrations: 1))
         {
-            Query full = new Query { Scope = Scope.All, Detail = Detail.Full, Classes = Query.AllClasses };
-            Filter nothing = new Filter(model);
+            Query full = new Query { Scope = Scope.All, Full = true, Classes = Query.AllClasses };
+            IgnoredPairs nothing = new IgnoredPairs(model);
             for (int part = 0; part < model.PartCount; ++part)
             {
                 for (int other = 0; other <= part; ++other) nothing.IgnoreParts(part, other, true);
             }
             Refused("no sphere", Code.BadValue, "index", "", () => nothing.IgnorePair(0, 100000, true));
-            Query limited = new Query { Limit = 1 }, filtered = new Query { Filter = nothing }, rigid = new Query { Rule = Native.sc_default_rule() };
+            Query limited = new Query { Limit = 1 }, filtered = new Query { IgnoredPairs = nothing }, rigid = new Query { Rule = Native.sc_default_rule() };
             for (int frame = 0; frame < clip.Frames.Length; frame += 9)
             {
                 body.SetPose(clip.Frames[frame], kColumns);
@@ -208,7 +208,7 @@ public static class ApiTest
                 for (int i = 1; i < spheres.Pairs.Count; ++i) Check(spheres.Pairs[i - 1].A <= spheres.Pairs[i].A, "pairs are sorted");
                 Check(body.SpherePairs(filtered).Pairs.Count == 0 && body.Contacts(filtered).Parts.Count == 0, "all pairs are ignored");
                 Check(body.Contacts().Triangles.Count == 0, "quick: parts alone");
-                Contacts contacts = body.Contacts(new Query { Detail = Detail.Full });
+                Contacts contacts = body.Contacts(new Query { Full = true });
                 Check(contacts.Triangles.Count == contacts.Parts.Items.Take(contacts.Parts.Count).Sum(c => c.TrianglePairs), "triangles");
                 foreach (PartContact contact in contacts) Check(contact.PartA <= contact.PartB && contact.TrianglePairs > 0, "parts");
                 Penetration[] found = Listed(body.Penetrations());
@@ -271,7 +271,7 @@ public static class ApiTest
         {
             a.SetPose(deepest, kColumns);
             Refused("no pose", Code.NotOpen, "bodies", "SetPose", () => a.Contacts(b));
-            Query full = new Query { Detail = Detail.Full };
+            Query full = new Query { Full = true };
             foreach (float distance in new[] { 0.1f, 10 })
             {
                 b.SetPose(deepest, kColumns, Beside(model, distance));
@@ -304,7 +304,7 @@ public static class ApiTest
         using (Body other = new Body(model))
         {
             JointTransform beside = Beside(model, 0.3f);
-            Query query = new Query { Detail = Detail.Full, Filter = new Filter(model) };
+            Query query = new Query { Full = true, IgnoredPairs = new IgnoredPairs(model) };
             Ground ground = new Ground { Up = model.Up, Height = model.Origin.Y };
             other.SetPose(clip.Frames[0], kColumns);
             body.SetPose(clip.Frames[0], kColumns);

@@ -93,10 +93,10 @@ elseif(CASE STREQUAL drift)
   change(types.h "  SC_OVERFLOW = 1, " "  SC_OVERFLOW = 91, " "C:  enum Code.Overflow 91")
   change(pose.h "size_t bone_stride" "uint32_t bone_stride" "C:  field Pose.BoneStride at 20, 4 bytes, unsigned")
   change(types.h "SC_ABI_VERSION " "SC_ABI_VERSION 1" "C:  constant AbiVersion 1")
-  change(asset.h "SPHERECHAIN_API uint32_t sc_abi_version(void)"
-    "SPHERECHAIN_API void sc_new(size_t n) SC_NOEXCEPT;\nSPHERECHAIN_API uint32_t sc_abi_version(float x)"
+  change(asset.h "SPHERECHAIN_API size_t sc_part_words(const sc_asset* asset)"
+    "SPHERECHAIN_API void sc_new(size_t n) SC_NOEXCEPT;\nSPHERECHAIN_API size_t sc_part_words(float x)"
     "C:  function void sc_new(UIntPtr)")
-  list(APPEND expected "C:  function uint sc_abi_version(float)" "C#: function uint sc_abi_version()")
+  list(APPEND expected "C:  function UIntPtr sc_part_words(float)" "C#: function UIntPtr sc_part_words(Asset*)")
   run(text ${PYTHON} ${ROOT}/runtime/csharp/generate.py ${headers})
   if(text STREQUAL is OR NOT text MATCHES "public float Added;" OR NOT text MATCHES "void sc_new\\(UIntPtr n\\);")
     message(FATAL_ERROR "generate.py does not see other headers")

@@ -112,7 +112,7 @@ class Fuzzer {
     const Status status = sc_asset_open(&asset, SC_ABI_VERSION, block.get(), size, message_, sizeof message_);
     if (status != SC_OK) {
       ++refused_;
-      return status.field == SC_FIELD_DATA && sc_asset_is_open(&asset) == 0 && message_[0] != '\0';
+      return status.field == SC_FIELD_DATA && !is_open(&asset) && message_[0] != '\0';
     }
     ++opened_;
     const Use use = use_fully(asset);

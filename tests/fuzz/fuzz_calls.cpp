@@ -38,24 +38,12 @@ void ask_source(Case& c) {
 }
 
 // One edit, and what it must answer.
-Status edit(Case& c, Filter& filter, sc_code& wanted) {
-  const auto draw_sphere = [&] { return static_cast<std::uint32_t>(draw_index(c, c.n)); };
-  const std::uint32_t a = draw_sphere(), b = draw_sphere();
+Status edit(Case& c, std::uint64_t* ignored, sc_code& wanted) {
   const std::size_t parts = c.view().part_count();
   const std::size_t part = draw_index(c, parts), other = draw_index(c, parts);
   const int on = c.random.one_in(2) ? 0 : -3;
-  const auto wants = [&](bool is_sound) { wanted = is_sound ? SC_OK : SC_BAD_VALUE; };
-  switch (c.random.below(3)) {
-    case 0:
-      wants(a < c.n && b < c.n && a != b);
-      return sc_ignore_pair(&c.asset, &filter, a, b, on);
-    case 1:
-      wants(part < parts && other < parts);
-      return sc_ignore_parts(&c.asset, &filter, part, other, on);
-    default:
-      wants(true);
-      return sc_reset_filter(&c.asset, &filter);
-  }
+  wanted = part < parts && other < parts ? SC_OK : SC_BAD_VALUE;
+  return sc_ignore_parts(&c.asset, ignored, part, other, on);
 }
 
 }  // namespace
@@ -79,7 +67,7 @@ void fuzz_open(Case& c) {
                     size, message, message_size);
   const sc_code wanted[] = {SC_NULL, SC_WRONG_ABI, SC_NULL, SC_MISALIGNED, SC_NOT_AN_ASSET};
   c.expect(status == wanted[way] || (way == 4 && status == SC_CORRUPT), "the status of sc_asset_open");
-  c.expect(way < 2 || sc_asset_is_open(asset) == 0, "hostile bytes are open");
+  c.expect(way < 2 || !is_open(asset), "hostile bytes are open");
   c.expect(c.arena.kept_but({bytes_of(message, message_size), bytes_of(asset, way < 2 ? 0 : 1)}),
            "sc_asset_open writes what it must not");
   c.expect(message_size == 0 || std::memchr(message, 0, message_size) != nullptr, "a message without its end");
@@ -105,9 +93,9 @@ void fuzz_accessors(Case& c) {
                sc_target_name(draw_none<Target>(c, 8)) != nullptr,
            "text of what does not exist");
   for (const Asset* none : {static_cast<const Asset*>(nullptr), static_cast<const Asset*>(&c.closed)}) {
-    c.expect(sc_asset_is_open(none) == 0 && sc_pair_words(none) + detect_table_words(none) + skin_table_words(none) +
-                                                    skin_scratch_words(none) + sc_crowd_scratch_words(none, 3) ==
-                                                0,
+    c.expect(!is_open(none) && sc_pair_words(none) + detect_table_words(none) + skin_table_words(none) +
+                                       skin_scratch_words(none) + sc_crowd_scratch_words(none, 3) ==
+                                   0,
              "sizes of an asset that is not open");
   }
   ask_source(c);
@@ -117,18 +105,27 @@ void fuzz_filter(Case& c) {
   if (!draw_asset(c)) {
     return;
   }
-  Filter filter = draw_filter(c);
-  if (c.random.one_in(3)) spoil_filter(c, filter);
+  const Filter filter = draw_filter(c);
+  auto* words = const_cast<std::uint64_t*>(filter.ignored);
+  if (c.random.one_in(3)) {
+    if (c.random.one_in(2)) {
+      words = nullptr;
+      c.spoil(SC_NULL, SC_FIELD_IGNORED_PAIRS);
+    } else {
+      put_askew(c, words);
+      c.spoil(SC_MISALIGNED, SC_FIELD_IGNORED_PAIRS);
+    }
+  }
   c.arena.seal();
   for (int i = 0; i < 8; ++i) {
     sc_code wanted = SC_OK;
-    const Status status = edit(c, filter, wanted);
+    const Status status = edit(c, words, wanted);
     c.expect(c.spoiled > 0 ? status == c.wanted : status == wanted, "the status of an edit");
     c.expect(status == SC_OK || status.field != SC_FIELD_NONE, "an edit's status without its field");
     (status == SC_OK ? c.tally.ran : c.tally.refused) += 1;
   }
   const std::vector<Bytes> own = {bytes_of(filter.ignored, filter.ignored_words)};
-  c.expect(c.arena.kept_but(c.spoiled > 0 ? std::vector<Bytes>() : own), "an edit writes past the filter");
+  c.expect(c.arena.kept_but(c.spoiled > 0 ? std::vector<Bytes>() : own), "an edit writes past the ignored pairs");
 }
 
 void fuzz_prepare(Case& c) {

@@ -203,9 +203,10 @@ std::vector<Bone> draw_engine_joints(Case& c) {
 Filter draw_filter(Case& c) {
   Filter filter;
   filter.ignored_words = sc_pair_words(&c.asset);
-  filter.ignored = c.arena.add<std::uint64_t>(filter.ignored_words);
+  auto* const words = c.arena.add<std::uint64_t>(filter.ignored_words);
+  filter.ignored = words;
   for (std::size_t i = 0; i < filter.ignored_words; ++i) {
-    filter.ignored[i] = c.random.one_in(3) ? c.random.bits() & c.random.bits() & c.random.bits() : 0;
+    words[i] = c.random.one_in(3) ? c.random.bits() & c.random.bits() & c.random.bits() : 0;
   }
   return filter;
 }
@@ -214,20 +215,20 @@ void spoil_filter(Case& c, Filter& filter) {
   switch (c.random.below(4)) {
     case 0:
       filter.ignored_words += 1;
-      return c.spoil(SC_TOO_SMALL, SC_FIELD_FILTER);
+      return c.spoil(SC_TOO_SMALL, SC_FIELD_IGNORED_PAIRS);
     case 1:  // as of another asset
       if (filter.ignored_words > 0) {
         filter.ignored_words /= 2;
-        c.spoil(SC_TOO_SMALL, SC_FIELD_FILTER);
+        c.spoil(SC_TOO_SMALL, SC_FIELD_IGNORED_PAIRS);
       }
       return;
     case 2:
       filter.ignored = nullptr;
       filter.ignored_words += 1;
-      return c.spoil(SC_NULL, SC_FIELD_FILTER);
+      return c.spoil(SC_NULL, SC_FIELD_IGNORED_PAIRS);
     default:
       put_askew(c, filter.ignored);
-      return c.spoil(SC_MISALIGNED, SC_FIELD_FILTER);
+      return c.spoil(SC_MISALIGNED, SC_FIELD_IGNORED_PAIRS);
   }
 }
 

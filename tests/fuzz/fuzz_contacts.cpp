@@ -154,7 +154,7 @@ Ways ways_of(Case& c, SkinContactJob& job, Filter& filter, Target& other) {
                  if (job.candidates != nullptr) {
                    job.filter = &filter;
                    filter = draw_filter(c);
-                   return c.spoil(SC_BAD_VALUE, SC_FIELD_FILTER);
+                   return c.spoil(SC_BAD_VALUE, SC_FIELD_IGNORED_PAIRS);
                  }
                  if (job.filter == nullptr) filter = draw_filter(c);
                  job.filter = &filter;

@@ -69,7 +69,8 @@ Expected expected_of(Case& c, const CrowdJob& job) {
     detect.sphere_count = c.n;
     detect.radius = job.radius;
     detect.target = SC_TARGET_SCALAR;
-    detect.filter = job.filter;
+    const Filter filter{job.ignored_pairs, words};
+    detect.filter = job.ignored_pairs == nullptr ? nullptr : &filter;
     detect.pairs = pairs.data();
     detect.pair_capacity = pairs.size();
     detect.bits = expected.bits.data() + i * words;
@@ -126,7 +127,7 @@ void draw_outputs(Case& c, CrowdJob& job, std::size_t there_are) {
   job.parallel_for = c.random.pick(schedules);
 }
 
-Ways ways_of(Case& c, CrowdJob& job, Filter& filter, Target& other) {
+Ways ways_of(Case& c, CrowdJob& job, Target& other) {
   const std::size_t words = sc_pair_words(&c.asset);
   Ways ways = {[&] {
                  const std::size_t counts[] = {power_of_two(32), 0xFFFFFFFFU, ~std::size_t{0}, power_of_two(58)};
@@ -167,9 +168,9 @@ Ways ways_of(Case& c, CrowdJob& job, Filter& filter, Target& other) {
                [&] { job.radius = draw_none<Radius>(c, 2), c.spoil(SC_BAD_VALUE, SC_FIELD_RADIUS); },
                [&] { other = draw_none<Target>(c, 8), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
                [&] {
-                 if (job.filter == nullptr) filter = draw_filter(c);
-                 job.filter = &filter;
-                 spoil_filter(c, filter);
+                 if (job.ignored_pairs == nullptr) job.ignored_pairs = draw_filter(c).ignored;
+                 put_askew(c, job.ignored_pairs);
+                 c.spoil(SC_MISALIGNED, SC_FIELD_IGNORED_PAIRS);
                },
                [&] {
                  const Bytes read =
@@ -227,17 +228,13 @@ void fuzz_crowd(Case& c) {
   job.radius = static_cast<Radius>(c.random.below(2));
   const bool moves = c.view().bone_count() > 0 && c.view().refit_rule() == RefitRule::kMoments;
   moves&& c.random.one_in(2) ? draw_instances(c, job) : draw_spheres(c, job);
-  Filter filter;
-  if (c.random.one_in(2)) {
-    filter = draw_filter(c);
-    job.filter = &filter;
-  }
+  if (c.random.one_in(2)) job.ignored_pairs = draw_filter(c).ignored;
   const Expected expected = expected_of(c, job);
   draw_outputs(c, job, expected.pairs.size());
   const std::size_t instances = job.instance_count;
   const bool is_dealt = job.parallel_for != never;
   Target other = SC_TARGET_BEST;
-  if (instances > 0) spoil_some(c, ways_of(c, job, filter, other));
+  if (instances > 0) spoil_some(c, ways_of(c, job, other));
   job.pair_count = 77;
 
   Call call;

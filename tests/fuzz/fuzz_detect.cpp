@@ -97,7 +97,7 @@ void fuzz_detect(Case& c) {
             return c.spoil(SC_BAD_VALUE, SC_FIELD_TABLE);
           default:
             job.filter = &filter;
-            return c.spoil(SC_BAD_VALUE, SC_FIELD_FILTER);
+            return c.spoil(SC_BAD_VALUE, SC_FIELD_IGNORED_PAIRS);
         }
       }};
   add_asset_ways(c, job.asset, ways);

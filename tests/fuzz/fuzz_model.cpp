@@ -70,8 +70,8 @@ class Asking {
  public:
   Asking(Case& c, const Model& model) : c_(c), model_(model) {
     filter_ = draw_filter(c);
-    filter_of_less_ = filter_;
-    filter_of_less_.ignored_words += 1;
+    askew_pairs_ = filter_.ignored;
+    put_askew(c, askew_pairs_);
     const std::size_t words = sc_part_words(&c.asset);
     auto* const ignored = c.arena.add<std::uint64_t>(words);
     for (std::size_t i = 0; i < words; ++i) ignored[i] = c.random.bits() & c.random.bits();
@@ -121,12 +121,12 @@ class Asking {
     Query& query = out.query;
     Random& random = c_.random;
     query.scope = static_cast<Scope>(random.below(4));
-    query.detail = random.one_in(2) ? SC_DETAIL_FULL : SC_DETAIL_QUICK;
+    query.full = random.one_in(2) ? 1 : 0;
     query.classes = random.one_in(2) ? static_cast<std::uint32_t>(random.bits()) | 1U << random.below(6) : 0;
     query.limit = random.one_in(3) ? random.below(4) : random.one_in(4) ? ~std::size_t{0} : 0;
     query.radius = static_cast<Radius>(random.below(2));
     query.target = draw_target(c_);
-    if (!of_two && random.one_in(3)) query.filter = &filter_;
+    if (!of_two && random.one_in(3)) query.ignored_pairs = filter_.ignored;
     if (of_two && random.one_in(3)) query.ignored_parts = ignored_parts_;
     if (of_two && random.one_in(3)) query.ignored_parts_of_other = ignored_parts_;
     const bool is_of_parts = question == Question::kPenetrations || question == Question::kContacts;
@@ -149,8 +149,8 @@ class Asking {
         out.wanted = is_of_itself ? SC_BAD_VALUE : SC_OK;
         break;
       case 2:
-        if (!of_two) query.filter = &filter_of_less_;
-        out.wanted = is_of_itself || (question == Question::kSpheres && !of_two) ? SC_TOO_SMALL : SC_OK;
+        if (!of_two) query.ignored_pairs = askew_pairs_;
+        out.wanted = is_of_itself || (question == Question::kSpheres && !of_two) ? SC_MISALIGNED : SC_OK;
         break;
       case 3:
         query.rule = &bad_rule();
@@ -227,7 +227,8 @@ class Asking {
 
   Case& c_;
   const Model& model_;
-  Filter filter_, filter_of_less_;
+  Filter filter_;
+  const std::uint64_t* askew_pairs_ = nullptr;
   const std::uint64_t *ignored_parts_ = nullptr, *part_pairs_ = nullptr;
   const Penetration* previous_ = nullptr;
 };

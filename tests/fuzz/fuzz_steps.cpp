@@ -315,7 +315,7 @@ void fuzz_steps(Case& c) {
       [&] {
         if (job.filter == nullptr) filter = draw_filter(c);
         job.filter = &filter;
-        if (has_two) return c.spoil(SC_BAD_VALUE, SC_FIELD_FILTER);
+        if (has_two) return c.spoil(SC_BAD_VALUE, SC_FIELD_IGNORED_PAIRS);
         spoil_filter(c, filter);
       },
       [&] {

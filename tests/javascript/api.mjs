@@ -6,7 +6,7 @@ import { readFileSync } from 'node:fs';
 import test from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { readPalettes } from '../../samples/javascript/palettes.mjs';
-import { filterOf, frameHashes, pairHashes } from './frame_hashes.mjs';
+import { ignoredPairsOf, frameHashes, pairHashes } from './frame_hashes.mjs';
 
 const [packageFolder, assetFile, palettesFile, nativeFile, pairFile] = process.argv.slice(2);
 const { load, SpherechainError } = await import(pathToFileURL(`${packageFolder}/index.js`));
@@ -54,11 +54,11 @@ test('a model says what it is', () => {
 });
 
 test('each frame of a clip gives the bits that the C interface gives', () => {
-  const model = spherechain.createModel(bytes, joints), body = model.createBody({ findsSteps: true }), filter = filterOf(model);
+  const model = spherechain.createModel(bytes, joints), body = model.createBody({ findsSteps: true }), ignoredPairs = ignoredPairsOf(model);
   const wanted = readFileSync(nativeFile, 'utf8').trim().split('\n');
   assert.equal(wanted.length, frames.length);
   for (let frame = 2; frame < frames.length; frame += 4) {  // the arms are crossed from 27 on
-    assert.equal(frameHashes(body, filter, frames, frame), wanted[frame], `frame ${frame}`);
+    assert.equal(frameHashes(body, ignoredPairs, frames, frame), wanted[frame], `frame ${frame}`);
   }
   model.dispose();
 });
@@ -97,7 +97,7 @@ test('a query says what is listed', () => {
   assert.deepEqual([limited.length, limited.total, limited[0]], [1, faults.length, faults[0]]);
   assert.equal(model.createBody({ maxPenetrations: 1 }).model, model);
   // The classes of full measurements follow from them, by any rule.
-  const full = body.penetrations({ detail: 'full', classes: spherechain.classes });
+  const full = body.penetrations({ full: true, classes: spherechain.classes });
   for (const { kind, measures } of full) assert.equal(spherechain.classify(measures), kind);
   const { depth } = full[0].measures, { version, touchDepth, foldDepth, inside } = spherechain.defaultRule;
   assert.deepEqual([version, touchDepth], [4, 0]);
@@ -111,15 +111,15 @@ test('a query says what is listed', () => {
   refuses(() => body.contacts({ partPairs: [[0, 99]] }), /partPairs: \[0, 99\]/);
   refuses(() => body.contacts({ partPairs: [3, 7] }), /partPairs: two numbers/);
   // Everything is ignored.
-  const filter = model.createFilter();
-  for (let a = 0; a < model.partCount; ++a) for (let b = 0; b <= a; ++b) filter.ignoreParts(a, b);
-  assert.equal(body.contacts({ filter }).parts.length, 0);
-  assert.equal(body.spherePairs({ filter }).total, 0);
-  const { triangles, triangleTotal } = body.contacts({ detail: 'full' });
+  const ignoredPairs = model.createIgnoredPairs();
+  for (let a = 0; a < model.partCount; ++a) for (let b = 0; b <= a; ++b) ignoredPairs.ignoreParts(a, b);
+  assert.equal(body.contacts({ ignoredPairs }).parts.length, 0);
+  assert.equal(body.spherePairs({ ignoredPairs }).total, 0);
+  const { triangles, triangleTotal } = body.contacts({ full: true });
   assert.equal(triangles.length, 12 * triangleTotal);
   const small = model.createBody({ maxTriangles: 2 });
   small.setPose(posed);
-  assert.deepEqual([small.contacts({ detail: 'full' }).triangles.length, small.contacts({ detail: 'full' }).triangleTotal], [24, triangleTotal]);
+  assert.deepEqual([small.contacts({ full: true }).triangles.length, small.contacts({ full: true }).triangleTotal], [24, triangleTotal]);
   assert.deepEqual(structuredClone(small.contacts().parts), structuredClone(body.contacts().parts));
   // A direction of the frame before stays where the way is nearly as short.
   const own = structuredClone(body.penetrations()), turned = new Set();
@@ -136,7 +136,7 @@ test('a query says what is listed', () => {
   assert.ok(turned.size > 0);
   for (const [query, message] of [
     [{ scope: 'everything' }, /scope "everything": one of apart, neighbours, all/],
-    [{ detail: 'slow' }, /detail "slow": one of quick, full/],
+    [{ detail: 'slow' }, /query: "detail" is none of scope, full/],
     [{ classes: ['fault'] }, /classes "fault": one of rest, shell/],
     [{ classes: 'touch' }, /classes: a list is wanted/],
     [{ radius: 'large' }, /radius "large": one of detect, fit/],
@@ -147,16 +147,16 @@ test('a query says what is listed', () => {
     [{ rule: { shell: NaN } }, /rule/],
     [{ previous: 3 }, /previous: a list is wanted, not 3/],
     [{ previous: [{}] }, /./],
-    [{ filter: {} }, /filter: what createFilter\(\) made is wanted, not an Object/],
-    [{ filter: model }, /filter: what createFilter\(\) made is wanted, not a Model/],
+    [{ ignoredPairs: {} }, /ignoredPairs: what createIgnoredPairs\(\) made is wanted, not an Object/],
+    [{ ignoredPairs: model }, /ignoredPairs: what createIgnoredPairs\(\) made is wanted, not a Model/],
     [{ ignoredParts: [1] }, /ignored/],
     [{ ignoredParts: [-1] }, /ignoredParts: -1 is no body part/],
     [7, /query: an object is wanted, not 7/],
   ]) refuses(() => body.penetrations(query), message);
-  refuses(() => filter.ignorePair(0, model.sphereCount), /bad|not exist|value/);
-  filter.dispose();
-  refuses(() => filter.ignorePair(0, 1), /disposed/);
-  refuses(() => body.contacts({ filter }), /filter/);
+  refuses(() => ignoredPairs.ignorePair(0, model.sphereCount), /two different spheres/);
+  ignoredPairs.dispose();
+  refuses(() => ignoredPairs.ignorePair(0, 1), /disposed/);
+  refuses(() => body.contacts({ ignoredPairs }), /ignoredPairs/);
   model.dispose();
 });
 
@@ -262,7 +262,7 @@ test('a palette’s scale changes depths, and no class', () => {
   const model = spherechain.createModel(bytes, joints), body = model.createBody();
   const answers = palette => {
     body.setPose(palette);
-    return body.penetrations({ detail: 'full', classes: spherechain.classes })
+    return body.penetrations({ full: true, classes: spherechain.classes })
       .map(({ part, other, kind, measures }) => ({ part, other, kind, depth: measures.depth }));
   };
   const own = answers(posed), small = answers(posed.map((value, i) => (i % 4 === 3 ? value : value / 100)));
@@ -354,7 +354,7 @@ test('wrong arguments are refused', () => {
   body.vertices();
   model.dispose();
   for (const call of [() => body.spherePairs(), () => body.setPose(rest), () => body.vertices(), () => body.bounds(),
-    () => model.createBody(), () => model.createFilter(), () => model.triangle(0), () => model.checkRest(rest)]) refuses(call, /disposed/);
+    () => model.createBody(), () => model.createIgnoredPairs(), () => model.triangle(0), () => model.checkRest(rest)]) refuses(call, /disposed/);
   model.dispose();
   body.dispose();
 });
@@ -385,10 +385,10 @@ test('a skeleton that does not fit is refused, and the joint named', () => {
 
 test('memory is given back', () => {
   const round = () => {
-    const model = spherechain.createModel(bytes, joints), body = model.createBody(), filter = model.createFilter();
+    const model = spherechain.createModel(bytes, joints), body = model.createBody(), ignoredPairs = model.createIgnoredPairs();
     body.setPose(posed);
     body.setPose(null, { vertices: new Float32Array(3 * model.vertexCount) });
-    body.penetrations({ filter });
+    body.penetrations({ ignoredPairs });
     const { buffer } = body.vertices();
     model.dispose();
     return buffer.byteLength;

@@ -63,8 +63,8 @@ const line = answers => answers.map(answer => {
   return (hash.value >>> 0).toString(16).padStart(8, '0');
 }).join(' ');
 
-// A body of a model with `findsSteps`, and `filter` of filterOf().
-export function frameHashes(body, filter, frames, frame) {
+// A body of a model with `findsSteps`, and `ignoredPairs` of ignoredPairsOf().
+export function frameHashes(body, ignoredPairs, frames, frame) {
   body.setPose(frames[Math.max(frame - 1, 0)]);
   const previous = body.penetrations();
   body.setPose(frames[frame]);
@@ -72,16 +72,16 @@ export function frameHashes(body, filter, frames, frame) {
     hash => hash.penetrations(body.penetrations({ previous })),
     hash => { for (const radius of ['detect', 'fit']) hash.spherePairs(body.spherePairs({ radius })); },
     hash => {
-      hash.contacts(body.contacts({ detail: 'full' }));
+      hash.contacts(body.contacts({ full: true }));
       hash.contacts(body.contacts());
     },
     hash => hash.penetrations(body.penetrations()),
     hash => hash.penetrations(body.penetrations({ classes: KINDS })),
-    hash => hash.penetrations(body.penetrations({ detail: 'full', classes: KINDS })),
+    hash => hash.penetrations(body.penetrations({ full: true, classes: KINDS })),
     hash => hash.penetrations(body.penetrations({ classes: ['touch', 'penetration'], rule: { touchDepth: 0.0625 }, limit: 1 })),
     hash => {
-      hash.penetrations(body.penetrations({ classes: KINDS, filter }));
-      hash.spherePairs(body.spherePairs({ filter }));
+      hash.penetrations(body.penetrations({ classes: KINDS, ignoredPairs }));
+      hash.spherePairs(body.spherePairs({ ignoredPairs }));
     },
     hash => {
       const { low, high } = body.bounds(), height = Math.fround(low[1] + 0.0625 * body.model.height);
@@ -95,11 +95,11 @@ export function frameHashes(body, filter, frames, frame) {
   ]);
 }
 
-export function filterOf(model) {
-  const filter = model.createFilter();
-  filter.ignoreParts(0, 1);
-  filter.ignorePair(0, 1, false);
-  return filter;
+export function ignoredPairsOf(model) {
+  const ignoredPairs = model.createIgnoredPairs();
+  ignoredPairs.ignoreParts(0, 1);
+  ignoredPairs.ignorePair(0, 1, false);
+  return ignoredPairs;
 }
 
 // The line of --pair.
@@ -110,9 +110,9 @@ export function pairHashes(a, b, frames, frame) {
   }
   const ignored = { classes: KINDS, ignoredParts: Array.from({ length: 16 }, (_, i) => 2 * i), ignoredPartsOfOther: [1, 2] };
   return `${a.contacts(b).parts.length} ${line([
-    hash => hash.contacts(a.contacts(b, { detail: 'full' })),
+    hash => hash.contacts(a.contacts(b, { full: true })),
     hash => hash.penetrations(a.penetrations(b)),
-    hash => hash.penetrations(a.penetrations(b, { detail: 'full', classes: KINDS })),
+    hash => hash.penetrations(a.penetrations(b, { full: true, classes: KINDS })),
     hash => hash.penetrations(a.penetrations(b, ignored)),
     hash => hash.steps(a.steps(b)),
   ])}`;

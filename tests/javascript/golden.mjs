@@ -62,7 +62,7 @@ for (let frame = 0; frame < frames; ++frame) {
   for (let i = 0; i < positions.length; i += 3) skinned.floats([positions[i], positions[i + 1], positions[i + 2], 0]);
   skinned.count += positions.length / 3;
 
-  const contacts = body.contacts({ detail: 'full' }), parts = hash('part contacts bones');
+  const contacts = body.contacts({ full: true }), parts = hash('part contacts bones');
   for (const contact of contacts.parts) addPartContact(parts, contact);
   parts.count += contacts.parts.length;
   parts.word(END);
@@ -79,7 +79,7 @@ for (let frame = 0; frame < frames; ++frame) {
 
   if (frame % 4 === 0) {
     const measured = hash('penetrations bones');
-    previous = body.penetrations({ detail: 'full', classes: spherechain.classes, previous });
+    previous = body.penetrations({ full: true, classes: spherechain.classes, previous });
     for (const found of [...previous].sort((l, r) => lesser(l) - lesser(r))) addPenetration(measured, found);
     measured.count += previous.total;
     measured.word(END);

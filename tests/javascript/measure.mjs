@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A clip through the package: for Node and for a page.
-import { filterOf, frameHashes } from './frame_hashes.mjs';
+import { ignoredPairsOf, frameHashes } from './frame_hashes.mjs';
 import { readPalettes } from '../../samples/javascript/palettes.mjs';
 
 // The calls that are timed, after setPose(); and how often in a row, where a page's clock is too coarse for once.
@@ -9,7 +9,7 @@ const CALLS = {
   vertices: [body => body.vertices(), 5],
   contacts: [body => body.contacts(), 1],
   penetrations: [body => body.penetrations(), 1],
-  full: [(body, classes) => body.penetrations({ detail: 'full', classes }), 1],
+  full: [(body, classes) => body.penetrations({ full: true, classes }), 1],
 };
 
 // `asset`, `palettes`: ArrayBuffers. Lines as reference.cpp prints them; milliseconds a frame of each call; and of the very first
@@ -23,8 +23,8 @@ export async function measure(load, asset, palettes, passes, calls = ['contacts'
   const first = { open: made - start, frame: performance.now() - made };
 
   const times = Object.fromEntries(calls.map(name => [name, fastest(...CALLS[name])]));
-  const filter = filterOf(model);
-  const lines = frames.map((_, frame) => frameHashes(body, filter, frames, frame));
+  const ignoredPairs = ignoredPairsOf(model);
+  const lines = frames.map((_, frame) => frameHashes(body, ignoredPairs, frames, frame));
   model.dispose();
   return { lines, first, ...times };
 
@@ -56,7 +56,7 @@ export async function quickAgainstFull(load, asset, palettes) {
   for (const palette of frames) {
     body.setPose(palette);
     const quick = new Map(structuredClone(body.penetrations({ classes })).map(found => [`${found.part} ${found.other}`, found]));
-    for (const found of body.penetrations({ classes, detail: 'full' })) {
+    for (const found of body.penetrations({ classes, full: true })) {
       const same = quick.get(`${found.part} ${found.other}`);
       ratios.push(same.measures.depth / found.measures.depth);
       if (same.kind !== found.kind) ++otherClasses;

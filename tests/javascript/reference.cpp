@@ -85,12 +85,12 @@ void require(const Status& status) {
 }
 
 // The options of questions, with the instruction set that SPHERECHAIN_TARGET names.
-Query options(Detail detail = SC_DETAIL_QUICK, std::uint32_t classes = 0) {
+Query options(int full = 0, std::uint32_t classes = 0) {
   Query query;
   const char* const name = std::getenv("SPHERECHAIN_TARGET");
   if (name != nullptr && !find_target(name, query.target))
     throw std::runtime_error("SPHERECHAIN_TARGET: no such target here");
-  query.detail = detail;
+  query.full = full;
   query.classes = classes;
   return query;
 }
@@ -156,27 +156,24 @@ void print_frame(const Model& model, Body& body, const Palettes& palettes, std::
     line.add(body.sphere_pairs(spheres));
   }
   line.end();
-  line.add(body.contacts(options(SC_DETAIL_FULL))).add(body.contacts(options())).end();
+  line.add(body.contacts(options(1))).add(body.contacts(options())).end();
   line.add(body.penetrations(options())).end();
-  line.add(body.penetrations(options(SC_DETAIL_QUICK, kAll))).end();
-  line.add(body.penetrations(options(SC_DETAIL_FULL, kAll))).end();
+  line.add(body.penetrations(options(0, kAll))).end();
+  line.add(body.penetrations(options(1, kAll))).end();
 
-  Query worst = options(SC_DETAIL_QUICK, 1U << SC_CLASS_TOUCH | 1U << SC_CLASS_PENETRATION);
+  Query worst = options(0, 1U << SC_CLASS_TOUCH | 1U << SC_CLASS_PENETRATION);
   Rule rule = sc_default_rule();
   rule.touch_depth = 0.0625F;
   worst.rule = &rule;
   worst.limit = 1;
   line.add(body.penetrations(worst)).end();
 
-  std::vector<std::uint64_t> words(sc_pair_words(&model.asset()));
-  Filter filter;
-  filter.ignored = words.data();
-  filter.ignored_words = words.size();
-  require(sc_reset_filter(&model.asset(), &filter));
-  require(sc_ignore_parts(&model.asset(), &filter, 0, 1, 1));
-  require(sc_ignore_pair(&model.asset(), &filter, 0, 1, 0));
-  Query filtered = options(SC_DETAIL_QUICK, kAll);
-  filtered.filter = &filter;
+  const std::uint64_t* const own = model.info().ignored_pairs;
+  std::vector<std::uint64_t> ignored(own, own + sc_pair_words(&model.asset()));
+  require(sc_ignore_parts(&model.asset(), ignored.data(), 0, 1, 1));
+  ignored[0] &= ~std::uint64_t{1};  // of spheres 0 and 1
+  Query filtered = options(0, kAll);
+  filtered.ignored_pairs = ignored.data();
   line.add(body.penetrations(filtered)).add(body.sphere_pairs(filtered)).end();
 
   Vec3 low, high;
@@ -184,7 +181,7 @@ void print_frame(const Model& model, Body& body, const Palettes& palettes, std::
   Ground ground;
   ground.up = {0, 1, 0};
   ground.height = low.y + 0.0625F * model.info().height;
-  line.list(&low, 1, 0).list(&high, 1, 0).add(body.below(ground, options(SC_DETAIL_QUICK, kAll))).end();
+  line.list(&low, 1, 0).list(&high, 1, 0).add(body.below(ground, options(0, kAll))).end();
   line.add(body.steps(options())).end();
   std::puts("");
 }
@@ -197,13 +194,13 @@ void print_pair(Body& a, Body& b, const Palettes& palettes, std::size_t frame) {
     require(b.set_pose(pose_of(palettes.frames[of]), away));
   }
   Line line;
-  const Contacts contacts = a.contacts(b, options(SC_DETAIL_FULL));
+  const Contacts contacts = a.contacts(b, options(1));
   std::printf("%zu ", contacts.part_count);
   line.add(contacts).end();
   line.add(a.penetrations(b, options())).end();
-  line.add(a.penetrations(b, options(SC_DETAIL_FULL, kAll))).end();
+  line.add(a.penetrations(b, options(1, kAll))).end();
   const std::uint64_t ignored = 0x55555555, ignored_of_other = 6;  // parts 0, 2, 4 ...; 1 and 2
-  Query query = options(SC_DETAIL_QUICK, kAll);
+  Query query = options(0, kAll);
   query.ignored_parts = &ignored;
   query.ignored_parts_of_other = &ignored_of_other;
   line.add(a.penetrations(b, query)).end();

@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
   require(sc_create_body(model, &body_def, &other));
   const size_t floats = 12 * info.bone_count, poses = bones_size / (floats * sizeof(float));
   sc_query query = {0};
-  query.detail = SC_DETAIL_FULL;
+  query.full = 1;
   query.classes = ~0U;
   for (size_t i = 0; i < poses; ++i) {
     sc_pose pose = {0};
@@ -96,9 +96,10 @@ int main(int argc, char** argv) {
     put(found.items, sizeof *found.items, found.count);
     pose.bones = bones + i * floats;
     require(sc_set_pose(other, &pose, NULL));
-    sc_steps steps;
-    require(sc_find_steps(other, NULL, NULL, &steps));
-    put(steps.items, sizeof *steps.items, steps.count);
+    const sc_step_contact* steps;
+    size_t step_count;
+    require(sc_find_steps(other, NULL, NULL, &steps, &step_count));
+    put(steps, sizeof *steps, step_count);
     sc_vec3 box[2];
     require(sc_get_bounds(body, &box[0], &box[1]));
     fwrite(box, sizeof box, 1, stdout);

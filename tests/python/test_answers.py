@@ -34,7 +34,7 @@ class Answers(unittest.TestCase):
         cls.model = spherechain.Model(DOLL)
         cls.bones = random_poses(cls.model, 24, 80)
         cls.bones[20] = heap(cls.model)
-        cls.all = {"detail": "full", "classes": spherechain.CLASSES}
+        cls.all = {"full": True, "classes": spherechain.CLASSES}
         cls.found = cls.model.penetrations(cls.bones, **cls.all)
 
     def test_are_those_of_the_c_interface_bit_by_bit(self):
@@ -43,7 +43,7 @@ class Answers(unittest.TestCase):
             poses.write_bytes(self.bones.tobytes())
             reader = Reader(subprocess.run([REFERENCE, DOLL, poses], capture_output=True, check=True).stdout)
         spheres, pairs = self.model.spheres(self.bones), self.model.sphere_pairs(self.bones)
-        contacts = self.model.contacts(self.bones, detail="full", threads=2)
+        contacts = self.model.contacts(self.bones, full=True, threads=2)
         faults, floor = self.model.penetrations(self.bones), self.model.below((0, 1, 0), 0, self.bones, **self.all)
         firsts = np.broadcast_to(self.bones[0], self.bones.shape)
         with_first = self.model.penetrations(self.bones, other=spherechain.Posed(self.model, firsts), **self.all)
@@ -74,13 +74,13 @@ class Answers(unittest.TestCase):
         worst = self.model.penetrations(pose, limit=2, **self.all)
         self.assertEqual(worst.array.tobytes(), everything.array[:2].tobytes())
         self.assertEqual(worst.total, len(everything))
-        folds = self.model.penetrations(pose, detail="full", classes=["fold"])
+        folds = self.model.penetrations(pose, full=True, classes=["fold"])
         self.assertEqual({entry.kind for entry in folds}, {"fold"})
         pairs = [(int(row["part"]), int(row["other"])) for row in everything.array[:2]]
         self.assertEqual(self.model.penetrations(pose, part_pairs=pairs, **self.all).array.tobytes(), worst.array.tobytes())
         strict = self.model.penetrations(pose, rule=spherechain.Rule(touch_depth=1e-9))
         self.assertGreater(len(strict), len(self.model.penetrations(pose)))
-        spheres = self.model.contacts(pose, detail="full").spheres
+        spheres = self.model.contacts(pose, full=True).spheres
         apart = self.model.contacts(pose, ignored_spheres=[(int(a), int(b)) for a, b in spheres if a != b])
         self.assertLess(len(apart), len(everything))
         nothing = self.model.contacts(pose, other=spherechain.Posed(self.model, pose), ignored_parts=range(len(self.model.parts)))

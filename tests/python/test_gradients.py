@@ -76,7 +76,7 @@ class Gradients(unittest.TestCase):
 
     def test_of_a_depth_is_the_slope_of_the_deepest_points_distance(self):
         seen = 0
-        every = self.model.penetrations(self.single, detail="full", classes=spherechain.CLASSES)
+        every = self.model.penetrations(self.single, full=True, classes=spherechain.CLASSES)
         for bones, contacts in zip(self.bones, every):
             if len(contacts) == 0:
                 continue
@@ -108,9 +108,9 @@ class Gradients(unittest.TestCase):
             self.assertLess(abs(np.median(after[used] / energy[used]) - 0.9), 0.02)
 
     def test_the_skins_energy_is_the_sum_of_squared_depths_of_its_kinds(self):
-        contacts = self.model.penetrations(self.single, detail="full", classes=spherechain.CLASSES)
+        contacts = self.model.penetrations(self.single, full=True, classes=spherechain.CLASSES)
         for kinds in (("penetration", "deep_fold"), ("touch", "fold")):
-            energy, gradient = self.model.skin_energy(self.single, detail="full", classes=kinds, threads=2)
+            energy, gradient = self.model.skin_energy(self.single, full=True, classes=kinds, threads=2)
             for i, found in enumerate(contacts):
                 depths = np.array([c.depth if c.kind in kinds else 0 for c in found], np.float32)
                 self.assertAlmostEqual(energy[i], np.square(depths).sum(), delta=1e-5 * energy.max())

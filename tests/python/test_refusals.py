@@ -94,7 +94,7 @@ class Refusals(unittest.TestCase):
             start = time.process_time()
             threading.Timer(0.1, _thread.interrupt_main).start()
             with self.assertRaises(KeyboardInterrupt):
-                self.model.penetrations(poses, threads=threads, detail="full", classes=spherechain.CLASSES)
+                self.model.penetrations(poses, threads=threads, full=True, classes=spherechain.CLASSES)
             self.assertLess(time.process_time() - start, 5, "seconds of the processor; the batch would take 40")
 
     def test_contacts(self):
@@ -106,8 +106,8 @@ class Refusals(unittest.TestCase):
         self.refuses(ValueError, "scope is 'near'", self.model.contacts, self.rest, scope="near")
         self.refuses(ValueError, "classes is 'bad'", self.model.skin_energy, self.rest, classes=["bad"])
         self.refuses(ValueError, r"classes is \[\]: pass a list", self.model.penetrations, self.rest, classes=[])
-        self.refuses(ValueError, "detail is 'best'", self.model.penetrations, self.rest, detail="best")
-        self.refuses(TypeError, "quick is no option: scope, detail", self.model.penetrations, self.rest, quick=True)
+        self.refuses(TypeError, "full is 1: pass True or False", self.model.penetrations, self.rest, full=1)
+        self.refuses(TypeError, "quick is no option: scope, full", self.model.penetrations, self.rest, quick=True)
         self.refuses(ValueError, "limit is -1", self.model.penetrations, self.rest, limit=-1)
         self.refuses(ValueError, "part_pairs has 0, 99: there are", self.model.contacts, self.rest, part_pairs=[(0, 99)])
         self.refuses(ValueError, "ignored_parts", self.model.contacts, self.rest, ignored_parts=[0])  # of one body

@@ -26,7 +26,7 @@ void add_sphere(TinyAsset& tiny, const Vec3& center, float radius) {
   sphere.first_pivot = static_cast<std::uint32_t>(tiny.parts.pivots.size());
   sphere.pivot_count = 4;
   sphere.region = sphere.part = static_cast<std::uint8_t>(i % 5);
-  sphere.side = static_cast<std::uint8_t>(i % 5 != 4 ? SC_SIDE_NONE : i % 2 == 0 ? SC_SIDE_LEFT : SC_SIDE_RIGHT);
+  sphere.side = static_cast<std::uint8_t>(i % 5 != 4 ? 0 : i % 2 == 0 ? SC_SIDE_LEFT : SC_SIDE_RIGHT);
   sphere.level = i % 5 == 4 ? static_cast<std::int16_t>(i / 5) : std::int16_t{-1};
   tiny.parts.spheres.push_back(sphere);
   tiny.triangles.emplace_back();

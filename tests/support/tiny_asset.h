@@ -25,7 +25,7 @@ struct RegionEntry {
 
 struct PartEntry {
   std::string name;
-  std::uint8_t side = SC_SIDE_NONE;
+  std::uint8_t side = 0;
   std::int32_t bone = -1;
   std::int32_t parent = -1;
   std::uint8_t mobility = 0;

@@ -23,12 +23,12 @@ Status check_device() noexcept;
 // the first. Never null.
 const char* last_device_error() noexcept;
 
-// Fills a table for crowds of this asset and radius, with all that `filter` (or null: the asset's ignored pairs) says
-// now. `words` is the caller's, crowd_table_words() of them, at a multiple of 16 bytes. Copy all of them to each device
-// that runs the crowd. To change the filter, prepare and copy again.
-// SC_OK, SC_NULL, SC_MISALIGNED, SC_TOO_SMALL, SC_BAD_VALUE, SC_NOT_OPEN: nothing is written.
+// Fills a table for crowds of this asset and radius, with all that `ignored_pairs` (sc_pair_words() words; null: the
+// asset's) says now. `words` is the caller's, crowd_table_words() of them, at a multiple of 16 bytes. Copy all of them
+// to each device that runs the crowd. To change the pairs, prepare and copy again. SC_OK, SC_NULL, SC_MISALIGNED,
+// SC_TOO_SMALL, SC_BAD_VALUE, SC_NOT_OPEN: nothing is written.
 std::size_t crowd_table_words(const Asset& asset) noexcept;  // 0 where the asset is not open
-Status prepare_crowd(const Asset& asset, Radius radius, const Filter* filter, std::uint64_t* words,
+Status prepare_crowd(const Asset& asset, Radius radius, const std::uint64_t* ignored_pairs, std::uint64_t* words,
                      std::size_t word_count) noexcept;
 
 // The bytes that one block of a kernel works in, for a group with these inputs and outputs; a multiple of 16. If the
@@ -99,7 +99,7 @@ class HostCrowd {
   // Allocates what that many instances and pairs (of all of them together) take; closes what was open. A status of
   // prepare_crowd(); SC_NOT_IN_ASSET if the asset cannot be refitted from bones; SC_BAD_VALUE for no instances, 2^31 or
   // more, or no pairs; SC_NO_DEVICE; SC_NO_MEMORY; SC_DEVICE_FAILED, also if the device's memory runs out.
-  Status open(const Asset& asset, Radius radius, const Filter* filter, std::size_t instances,
+  Status open(const Asset& asset, Radius radius, const std::uint64_t* ignored_pairs, std::size_t instances,
               std::size_t pair_capacity) noexcept;
   void close() noexcept;
   bool is_open() const noexcept { return memory_ != nullptr; }

@@ -12,7 +12,8 @@ typedef struct sc_asset {
   uint64_t opaque[128] SC_ZERO;
 } sc_asset;
 
-SC_ENUM(sc_side){SC_SIDE_NONE = 0, SC_SIDE_LEFT = 1, SC_SIDE_RIGHT = 2}; /* the character's own */
+#define SC_SIDE_LEFT 1
+#define SC_SIDE_RIGHT 2
 
 /* A bone of the source's skeleton, or a joint of the automatic rig: a game moves the character by these. */
 typedef struct sc_bone {
@@ -23,7 +24,7 @@ typedef struct sc_bone {
 /* A part of the body as people call it: "right hand", "head". Every triangle belongs to one. */
 typedef struct sc_part {
   const char* name;
-  sc_side side;
+  int32_t side;     /* the character's own: SC_SIDE_LEFT, SC_SIDE_RIGHT, or 0: neither */
   int32_t bone;     /* the bone that it follows; -1 where no bone moves it */
   int32_t parent;   /* the part that it hangs on; -1: none */
   int32_t mobility; /* if two parts intersect, the one with the higher number goes into the other. From high to low:
@@ -36,7 +37,7 @@ typedef struct sc_rest_sphere {
   sc_vec3 center;
   float radius;        /* the fit radius; > 0 */
   float detect_radius; /* >= 0 */
-  sc_side side;        /* of a torso sphere: the half that it stands for */
+  int32_t side;        /* of a torso sphere: the half that it stands for, as sc_part.side */
   uint32_t region;     /* below sc_asset_info.region_count */
   int32_t level;       /* of a torso sphere: its height, from the bottom up; else -1 */
   uint32_t part;       /* that most of its triangles are of */
@@ -63,14 +64,12 @@ typedef struct sc_asset_info {
                                         orthonormal, left x up = forward */
   float height;                      /* source units */
   float metres_per_unit;
+  const uint64_t* ignored_pairs; /* the pairs of ignored_pair_count; sc_pair_words() words of the asset */
 } sc_asset_info;
 
 #if defined(__cplusplus)
 extern "C" {
 #endif
-
-/* The number that the library was built with. */
-SPHERECHAIN_API uint32_t sc_abi_version(void) SC_NOEXCEPT;
 
 /* Verifies `size` bytes at `data` and makes `asset` a view of them. On failure the asset is closed (with SC_WRONG_ABI
  * it is left alone), and where `message` is not null it receives a sentence that names what is wrong, cut to
@@ -83,7 +82,6 @@ SPHERECHAIN_API uint32_t sc_abi_version(void) SC_NOEXCEPT;
  * SC_OK, SC_NULL, SC_MISALIGNED, SC_NOT_AN_ASSET, SC_OTHER_VERSION, SC_CORRUPT, SC_WRONG_ABI. */
 SPHERECHAIN_API sc_status sc_asset_open(sc_asset* asset, uint32_t abi, const void* data, size_t size, char* message,
                                         size_t message_size) SC_NOEXCEPT;
-SPHERECHAIN_API int sc_asset_is_open(const sc_asset* asset) SC_NOEXCEPT;
 
 /* The functions below take an open asset. They return zeros for an index that does not exist. */
 SPHERECHAIN_API sc_asset_info sc_asset_get_info(const sc_asset* asset) SC_NOEXCEPT;
@@ -106,6 +104,22 @@ SPHERECHAIN_API uint64_t sc_hash_positions(const float* positions, size_t count,
 SPHERECHAIN_API sc_status sc_check_source(const sc_asset* asset, size_t buffer, const float* positions, size_t count,
                                           size_t stride) SC_NOEXCEPT;
 
+/* Ignored pairs: the pairs of spheres that a question leaves out. Bit b(b-1)/2 + a, a < b, is of the spheres a and b:
+ * bit k is bit k % 64 of word k / 64. Copy sc_asset_info.ignored_pairs, set or clear bits, and pass your words in a
+ * query or a crowd job. They are read while it runs: do not edit them then. */
+
+/* Words of a bit for each pair of spheres. 0 where the asset is not open. */
+SPHERECHAIN_API size_t sc_pair_words(const sc_asset* asset) SC_NOEXCEPT;
+/* Words of a bit for each body part: bit p is part p's. 0 where the asset is not open. */
+SPHERECHAIN_API size_t sc_part_words(const sc_asset* asset) SC_NOEXCEPT;
+
+/* Sets the bit of each pair of a sphere of one body part with a sphere of the other (sc_rest_sphere.part); the same
+ * part twice: of the pairs within it. `ignored` 0 clears the bits: the pairs are reported again, also where the asset
+ * itself ignores them. SC_OK; SC_NULL, SC_MISALIGNED, SC_NOT_OPEN; SC_ALIASED: the words are the asset's own;
+ * SC_BAD_VALUE: a part does not exist. After an error nothing is written. */
+SPHERECHAIN_API sc_status sc_ignore_parts(const sc_asset* asset, uint64_t* ignored_pairs, size_t part, size_t other,
+                                          int ignored) SC_NOEXCEPT;
+
 #if defined(__cplusplus)
 }
 namespace spherechain {
@@ -113,6 +127,5 @@ using Asset = sc_asset;
 using AssetInfo = sc_asset_info;
 using Bone = sc_bone;
 using BodyPart = sc_part;
-using Side = sc_side;
 }  // namespace spherechain
 #endif

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "spherechain/contacts.h"
-#include "spherechain/filter.h"
 #include "spherechain/model.h"
 
 /* A body holds a pose, the pose before it, what was derived from them, and the results of its queries. All memory is
@@ -24,21 +23,17 @@ typedef struct sc_body_def {
   const sc_allocator* allocator SC_ZERO; /* copied; null: the model's */
 } sc_body_def;
 
-SC_ENUM(sc_detail){
-    /* Penetrations: faults in full but for their volume, others along one direction and without visibility.
-     * Contacts: body parts. */
-    SC_DETAIL_QUICK = 0,
-    /* Penetrations: all in full. The faults are the same. Contacts: spheres and triangles, too. */
-    SC_DETAIL_FULL = 1,
-};
-
 /* The options of a question. Zeros, or a null pointer, give the faults that `play` and `check` report, but for those
  * between layers of one place: they ask for SC_SCOPE_LAYERS. */
 typedef struct sc_query {
   sc_scope scope SC_ZERO;
-  sc_detail detail SC_ZERO;
-  /* Pairs of spheres that do not meet, in questions about a body with itself; null: the asset's ignored pairs. */
-  const sc_filter* filter SC_ZERO;
+  /* 0: penetrations are measured quickly: faults in full but for their volume, others along one direction and without
+   * visibility. Contacts are of body parts.
+   * 1: all penetrations are measured in full. The faults are the same. Contacts are of spheres and triangles, too. */
+  int32_t full SC_ZERO;
+  /* Pairs of spheres that do not meet, in questions about a body with itself: sc_pair_words() words, laid out as in
+   * asset.h; null: the asset's ignored pairs. */
+  const uint64_t* ignored_pairs SC_ZERO;
   /* Body parts that meet nothing, in questions about two bodies or the ground: bit p of sc_part_words() words is part
    * p's; null: all parts meet. */
   const uint64_t* ignored_parts SC_ZERO;
@@ -87,12 +82,6 @@ typedef struct sc_sphere_pairs {
   size_t count, total;
 } sc_sphere_pairs;
 
-/* By (part_a, part_b), each once. Valid until the body's next question about steps. */
-typedef struct sc_steps {
-  const sc_step_contact* items;
-  size_t count;
-} sc_steps;
-
 /* A plane, and how far the ground is above it. */
 typedef struct sc_ground {
   /* The world's upward direction, of unit length. The character's own, sc_asset_info.up, may differ by degrees. */
@@ -120,7 +109,7 @@ SPHERECHAIN_API sc_status sc_set_pose(sc_body* body, const sc_pose* pose, const 
 
 /* The questions. `other` null: the body with itself; else another body, which may be of the same model. Parts of `body`
  * come first. `query` null: all zeros. SC_OK; SC_NULL, SC_BAD_VALUE (also: a field of the query that the question would
- * not read: ignored parts without `other`, a filter with it, part_pairs of steps or the ground), SC_NOT_IN_ASSET,
+ * not read: ignored parts without `other`, ignored pairs with it, part_pairs of steps or the ground), SC_NOT_IN_ASSET,
  * SC_UNSUPPORTED_TARGET; with SC_FIELD_BODIES: SC_ALIASED
  * (`other` is the body), SC_TOO_SMALL (the other's model is larger than the body was made for; of steps: it was not
  * made for them), SC_NOT_OPEN (a body has no pose; of steps: no pose before). After an error the result is empty. */
@@ -132,9 +121,10 @@ SPHERECHAIN_API sc_status sc_find_sphere_pairs(sc_body* body, const sc_query* qu
                                                sc_sphere_pairs* found) SC_NOEXCEPT;
 /* Finds the body parts that touch on the way from the last pose to this one. Matrices and vertices are blended
  * linearly. Layers of one place are left out. Finds every contact deeper than `tolerance`, and reports none that does
- * not exist. Shallower contacts may be missed. Times are accurate to the same distance. */
+ * not exist. Shallower contacts may be missed. Times are accurate to the same distance. *steps becomes a list by
+ * (part_a, part_b), each once; it is valid until the body's next question about steps. */
 SPHERECHAIN_API sc_status sc_find_steps(sc_body* body, const sc_body* other, const sc_query* query,
-                                        sc_steps* found) SC_NOEXCEPT;
+                                        const sc_step_contact** steps, size_t* count) SC_NOEXCEPT;
 /* The body parts below the ground; `other` is SC_FLOOR. */
 SPHERECHAIN_API sc_status sc_find_in_ground(sc_body* body, const sc_ground* ground, const sc_query* query,
                                             sc_penetrations* found) SC_NOEXCEPT;
@@ -147,7 +137,6 @@ SPHERECHAIN_API sc_status sc_get_bounds(const sc_body* body, sc_vec3* low, sc_ve
 namespace spherechain {
 
 using BodyDef = sc_body_def;
-using Detail = sc_detail;
 using Query = sc_query;
 using SpherePairs = sc_sphere_pairs;
 using Ground = sc_ground;
@@ -164,7 +153,9 @@ struct Contacts : sc_contacts {
   const PartContact* end() const noexcept { return parts + part_count; }
 };
 
-struct Steps : sc_steps {
+struct Steps {
+  const StepContact* items;
+  size_t count;
   const StepContact* begin() const noexcept { return items; }
   const StepContact* end() const noexcept { return items + count; }
 };
@@ -215,11 +206,14 @@ class Body {
     status_ = sc_find_sphere_pairs(handle_, &query, &out);
     return out;
   }
-  Steps steps(const Query& query = {}) noexcept { return ask<Steps>(sc_find_steps, nullptr, query); }
-  Steps steps(const Body& other, const Query& query = {}) noexcept { return ask<Steps>(sc_find_steps, &other, query); }
+  Steps steps(const Query& query = {}) noexcept { return ask<Steps>(find_steps, nullptr, query); }
+  Steps steps(const Body& other, const Query& query = {}) noexcept { return ask<Steps>(find_steps, &other, query); }
   Status bounds(Vec3& low, Vec3& high) noexcept { return status_ = sc_get_bounds(handle_, &low, &high); }
 
  private:
+  static Status find_steps(sc_body* body, const sc_body* other, const Query* query, Steps* found) noexcept {
+    return sc_find_steps(body, other, query, &found->items, &found->count);
+  }
   /* `other` null: the body with itself. A body that was not made is refused. */
   template <typename Found, typename Question>
   Found ask(Question question, const Body* other, const Query& query) noexcept {

@@ -2,7 +2,6 @@
 /* Many characters: the pairs of spheres of each (on a GPU: cuda.h), and which of them may meet. */
 #pragma once
 
-#include "spherechain/filter.h"
 #include "spherechain/pose.h"
 
 typedef struct sc_crowd_pair {
@@ -26,8 +25,8 @@ typedef struct sc_crowd_job {
   size_t instance_stride SC_ZERO;
   sc_radius radius SC_ZERO;
   sc_target target SC_ZERO;
-  const sc_filter* filter SC_ZERO;
-  uint64_t* scratch SC_ZERO; /* sc_crowd_scratch_words() words */
+  const uint64_t* ignored_pairs SC_ZERO; /* sc_pair_words() words; null: the asset's ignored pairs */
+  uint64_t* scratch SC_ZERO;             /* sc_crowd_scratch_words() words */
   size_t scratch_words SC_ZERO;
   /* Into how many tasks the instances are divided (0 counts as 1), and the caller's scheduler: it calls task(data, i)
    * once for each i below count, on any threads in any order, and returns when all have. Null: one after another. */

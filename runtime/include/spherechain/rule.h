@@ -27,7 +27,7 @@ SC_ENUM(sc_relation){
 
 /* The measurements of two body parts that intersect. Without sc_query.previous the class follows from them
  * alone, so you can store them and classify them again; in the ground it follows from the depth alone. A quick query
- * (SC_DETAIL_QUICK) measures only as much as its own rule needs. The measurements of SC_DETAIL_FULL fit any rule if
+ * (sc_query.full = 0) measures only as much as its own rule needs. The measurements of a full one fit any rule if
  * `extent` is known, or if the rule sets touch_depth. */
 typedef struct sc_measures {
   float depth;          /* > 0: the way out; the pose's units */

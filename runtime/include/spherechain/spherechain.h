@@ -6,7 +6,6 @@
 #include "spherechain/body.h"
 #include "spherechain/contacts.h"
 #include "spherechain/crowd.h"
-#include "spherechain/filter.h"
 #include "spherechain/model.h"
 #include "spherechain/pose.h"
 #include "spherechain/response.h"

@@ -7,7 +7,7 @@
 
 /* The version of the binary interface. It changes with every incompatible change of a struct or function.
  * sc_asset_open() compares the program's number with the library's and refuses another (SC_WRONG_ABI). */
-#define SC_ABI_VERSION 15
+#define SC_ABI_VERSION 16
 
 /* Marks what a shared library exports. The CMake target and pkg-config define SPHERECHAIN_SHARED where the library is
  * shared; SPHERECHAIN_BUILDING is defined only while the library itself is built. */
@@ -68,15 +68,15 @@ SC_ENUM(sc_target){
 /* Error codes. */
 SC_ENUM(sc_code){
     SC_OK = 0,
-    SC_OVERFLOW = 1,     /* an output buffer is too small; the job's counts say how many entries there are */
-    SC_NULL = 2,         /* the field is required and null */
-    SC_MISALIGNED = 3,   /* the field's memory is not aligned as its type */
-    SC_TOO_SMALL = 4,    /* the field has fewer entries than the call needs, or a filter's buffer another number */
-    SC_BAD_STRIDE = 5,   /* a stride below the size of an entry, or no multiple of 4 */
-    SC_BAD_VALUE = 6,    /* the field has a value that does not exist */
-    SC_ALIASED = 7,      /* the field is written and overlaps another buffer of the call */
-    SC_NOT_OPEN = 8,     /* the asset was never opened */
-    SC_NOT_IN_ASSET = 9, /* the asset has no data for this: no bones, or no triangles */
+    SC_OVERFLOW = 1,            /* an output buffer is too small; the job's counts say how many entries there are */
+    SC_NULL = 2,                /* the field is required and null */
+    SC_MISALIGNED = 3,          /* the field's memory is not aligned as its type */
+    SC_TOO_SMALL = 4,           /* the field has fewer entries than the call needs */
+    SC_BAD_STRIDE = 5,          /* a stride below the size of an entry, or no multiple of 4 */
+    SC_BAD_VALUE = 6,           /* the field has a value that does not exist */
+    SC_ALIASED = 7,             /* the field is written and overlaps another buffer of the call */
+    SC_NOT_OPEN = 8,            /* the asset was never opened */
+    SC_NOT_IN_ASSET = 9,        /* the asset has no data for this: no bones, or no triangles */
     SC_UNSUPPORTED_TARGET = 10, /* this build or this machine lacks the instruction set */
     SC_NOT_AN_ASSET = 11,       /* the bytes are no .sphc file */
     SC_OTHER_VERSION = 12,      /* the asset is of another format version: bake it again */
@@ -108,7 +108,7 @@ SC_ENUM(sc_field){
     SC_FIELD_TARGET = 12,
     SC_FIELD_SPHERES = 13,
     SC_FIELD_TABLE = 14,
-    SC_FIELD_FILTER = 15,
+    SC_FIELD_IGNORED_PAIRS = 15,
     SC_FIELD_PAIRS = 16,
     SC_FIELD_BITS = 17,
     SC_FIELD_SCOPE = 18,

@@ -15,7 +15,8 @@ let loading = null;
 let call, bytes, words, floats;  // the module's functions, and views of all its memory
 let status, query, subject, pose, out, sentence;  // where calls pass structs
 const SENTENCE_BYTES = 256;
-const handles = new WeakMap();  // where models, bodies and filters are in memory, until they are disposed of
+const ABI_VERSION = 16, IGNORED_PAIRS = 30;  // SC_ABI_VERSION, and where sc_asset_info.ignored_pairs is: module.cpp asserts both
+const handles = new WeakMap();  // where models, bodies and ignored pairs are in memory, until they are disposed of
 
 export function load() {
   return (loading ??= instantiate());
@@ -198,7 +199,7 @@ const history = copied(value => 4 * Penetration.words * checkList(value, 'previo
   for (let i = 0; i < value.length; ++i) Penetration.write(place + 4 * Penetration.words * i, value[i], `previous[${i}]`);
 });
 const Query = struct({
-  scope: choice('apart', 'neighbours', 'all', 'layers'), detail: choice('quick', 'full'), filter: handle('createFilter()', () => Filter), ignoredParts: parts(),
+  scope: choice('apart', 'neighbours', 'all', 'layers'), full: flag, ignoredPairs: handle('createIgnoredPairs()', () => IgnoredPairs), ignoredParts: parts(),
   ignoredPartsOfOther: parts(), partPairs: copied(value => 4 * value.length, (place, value) => words.set(value, place / 4)),
   rule: limits,
   classes: field(0, null, (place, value = [], name) => {
@@ -236,7 +237,7 @@ class Spherechain {
     return lend([data, new Uint32Array(2 * names.length), ...texts, ...matrices], ([first, table, ...places]) => {
       names.forEach((_, i) => words.set([places[i], places[names.length + i] ?? 0], table / 4 + 2 * i));
       words.set([first, data.length, joints ? table : 0, names.length, layoutOf(count), 0], subject / 4);
-      call.sc_create_model(status, call.sc_abi_version(), subject, out, sentence, SENTENCE_BYTES);
+      call.sc_create_model(status, ABI_VERSION, subject, out, sentence, SENTENCE_BYTES);
       check(true);
       return new Model(words[out / 4], joints?.length);
     });
@@ -304,11 +305,12 @@ class Model {
     return this.#own(Body, words[out / 4], call.sc_destroy_body);
   }
 
-  createFilter() {
-    const asset = call.sc_get_asset(handleOf(this, 'model')), count = call.sc_pair_words(asset), filter = allocate(8 + 8 * count);
-    words.set([filter + 8, count], filter / 4);
-    call.sc_reset_filter(status, asset, filter);
-    return this.#own(Filter, filter, call.free);
+  createIgnoredPairs() {
+    const asset = call.sc_get_asset(handleOf(this, 'model')), count = 2 * call.sc_pair_words(asset), pairs = allocate(4 * count);
+    call.sc_asset_get_info(out, asset);
+    const own = words[out / 4 + IGNORED_PAIRS] / 4;
+    words.copyWithin(pairs / 4, own, own + count);
+    return this.#own(IgnoredPairs, pairs, call.free);
   }
 
   #own(Class, place, free) {
@@ -328,25 +330,27 @@ class Model {
   }
 }
 
-class Filter {
+class IgnoredPairs {
   constructor(model, dispose) {
     Object.assign(this, { model, dispose });
   }
 
   ignorePair(a, b, isIgnored = true) {
-    this.#edit(call.sc_ignore_pair, a, b, isIgnored);
+    const pairs = handleOf(this, 'ignored pairs'), low = Math.min(a, b), high = Math.max(a, b), bit = (high * (high - 1)) / 2 + low;
+    const are = Number.isInteger(low) && Number.isInteger(high) && low >= 0 && low !== high && high < this.model.sphereCount;
+    if (!are) refuse(`ignorePair(): two different spheres are wanted, not ${a} and ${b}`);
+    const at = pairs / 4 + (bit >> 5), mask = 1 << bit % 32;
+    words[at] = isIgnored ? words[at] | mask : words[at] & ~mask;
   }
   ignoreParts(part, other, isIgnored = true) {
-    this.#edit(call.sc_ignore_parts, part, other, isIgnored);
-  }
-  #edit(edit, a, b, isIgnored) {
-    const filter = handleOf(this, 'filter');
-    edit(status, call.sc_get_asset(handles.get(this.model)), filter, a, b, isIgnored ? 1 : 0);
+    const pairs = handleOf(this, 'ignored pairs');
+    call.sc_ignore_parts(status, call.sc_get_asset(handles.get(this.model)), pairs, part, other, isIgnored ? 1 : 0);
     check();
   }
 }
 
 const POSE_KEYS = ['morphWeights', 'place', 'vertices'];
+const findSteps = (_, body, other, asked, found) => call.sc_find_steps(status, body, other, asked, found, found + 4);
 const findSpherePairs = (_, body, about, asked, found) => call.sc_find_sphere_pairs(status, body, asked, found);
 
 class Body {
@@ -418,7 +422,7 @@ class Body {
   }
 
   steps(other, asked) {
-    this.#find(call.sc_find_steps, other, asked);
+    this.#find(findSteps, other, asked);
     return this.#steps(words[out / 4 + 1]);
   }
 

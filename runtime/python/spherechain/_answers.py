@@ -64,7 +64,7 @@ class Penetration(NamedTuple):
     distance: float  #: `part`, moved so far in `direction`, is free of `other`
     direction: NDArray[np.float32]  #: (3,), of unit length
     joint: Optional[int]  #: moves `part`, into Model.joints
-    volume: Optional[float]  #: of the one part inside the other; None where it is not known, and with detail="quick"
+    volume: Optional[float]  #: of the one part inside the other; None where it is not known, and without full=True
     visible: float  #: 0 to 1: the share of the line in which they cross that can be seen from outside
     swallowed: float  #: 0 to 1: the share of `part` that is inside `other`; 0 where it was not looked at
     through: bool  #: `part` is inside, and comes out again on the other side
@@ -155,7 +155,7 @@ class Penetrations(_List):
 
 
 class Contacts(_List):
-    """The contacts of one pose, sorted by the parts' numbers. `array`: dtype PART_CONTACT. With detail="full" `spheres`
+    """The contacts of one pose, sorted by the parts' numbers. `array`: dtype PART_CONTACT. With full=True `spheres`
     (dtype SPHERE_PAIR) and `triangles` (dtype TRIANGLE_PAIR) list all that intersect; else they are None."""
 
     def __init__(self, array: np.ndarray, names: Tuple, spheres: Optional[np.ndarray],

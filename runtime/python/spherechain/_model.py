@@ -14,7 +14,7 @@ from ._answers import (CLASSES, FAULTS, PART_CONTACT, PENETRATION, SPHERE_PAIR, 
                        Rule, Steps)
 
 _PENETRATIONS, _CONTACTS, _STEPS, _GROUND, _BOUNDS = range(5)  # questions of the native module
-_RADII, _SCOPES, _DETAILS = (kind.__members__ for kind in (_native.Radius, _native.Scope, _native.Detail))
+_RADII, _SCOPES = (kind.__members__ for kind in (_native.Radius, _native.Scope))
 _SIDES = ("", "left", "right")
 _TWO_BODIES = 4  # sc_relation
 _FAR = 1e15
@@ -43,7 +43,7 @@ class Query(NamedTuple):
     """The options of a question, keywords of Model's methods. The defaults ask what `play` and `check` ask."""
 
     scope: str = "apart"  #: "layers": with garments on the body; "all": with neighbours, too, the folds of elbows and knees; "neighbours": these alone
-    detail: str = "quick"  #: "full": penetrations that are no faults in full, too; contacts of spheres and triangles
+    full: bool = False  #: True: penetrations that are no faults in full, too; contacts of spheres and triangles
     classes: Sequence[str] = FAULTS  #: which penetrations are listed, of CLASSES
     limit: int = 0  #: the worst so many; 0: all
     rule: Rule = Rule()  #: the limits of classes
@@ -199,9 +199,9 @@ class Model:
 
     def contacts(self, bones: Any = None, *, vertices: Any = None, morph_weights: Any = None,
                  other: Optional[Posed] = None, threads: int = 1, **query: Any) -> Any:
-        """Where skins intersect, exactly. Returns Contacts: of body parts; with detail="full" of spheres and triangles."""
+        """Where skins intersect, exactly. Returns Contacts: of body parts; with full=True of spheres and triangles."""
         found, batch, names = self._ask(_CONTACTS, (bones, vertices, morph_weights), other, threads, query)
-        is_full = query.get("detail") == "full"
+        is_full = query.get("full", False)
         return _nested([Contacts(np.frombuffer(parts, PART_CONTACT), names,
                                  np.frombuffer(spheres, SPHERE_PAIR) if is_full else None,
                                  np.frombuffer(triangles, TRIANGLE_PAIR) if is_full else None)
@@ -374,6 +374,8 @@ class Model:
         for name, kind in (("rule", Rule), ("previous", (Penetrations, type(None)))):
             if not isinstance(getattr(query, name), kind):
                 raise TypeError(f"{name} is {getattr(query, name)!r}: pass spherechain.{name.capitalize()}")
+        if not isinstance(query.full, bool):
+            raise TypeError(f"full is {query.full!r}: pass True or False")
         if isinstance(query.classes, str) or not query.classes:
             raise ValueError(f"classes is {query.classes!r}: pass a list of names, some of {', '.join(CLASSES)}")
         if other is None and ground is None and (query.ignored_parts is not None or query.ignored_parts_of_other is not None):
@@ -386,7 +388,7 @@ class Model:
         classes = {_choice("classes", name, _native.Class.__members__) for name in query.classes}
         previous = query.previous
         return {**query._asdict(), "scope": _choice("scope", query.scope, _SCOPES), "ground": ground or [0, 0, 0, 0],
-                "detail": _choice("detail", query.detail, _DETAILS), "classes": sum(1 << int(kind) for kind in classes),
+                "classes": sum(1 << int(kind) for kind in classes),
                 "ignored_parts": _bits("ignored_parts", query.ignored_parts, parts),
                 "ignored_parts_of_other": _bits("ignored_parts_of_other", query.ignored_parts_of_other, others),
                 "part_pairs": _bits("part_pairs", query.part_pairs, parts, others),

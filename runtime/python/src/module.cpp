@@ -71,7 +71,6 @@ PYBIND11_MODULE(_native, module) {
   module.attr("SIZES") = py::make_tuple(sizeof(Penetration), sizeof(PartContact), sizeof(Pair), sizeof(TriangleContact),
                                         sizeof(StepContact));
   py::enum_<Radius>(module, "Radius").value("detect", SC_RADIUS_DETECT).value("fit", SC_RADIUS_FIT);
-  py::enum_<Detail>(module, "Detail").value("quick", SC_DETAIL_QUICK).value("full", SC_DETAIL_FULL);
   py::enum_<Scope>(module, "Scope")
       .value("apart", SC_SCOPE_APART)
       .value("neighbours", SC_SCOPE_NEIGHBOURS)

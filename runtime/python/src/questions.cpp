@@ -72,9 +72,10 @@ class Asker {
       out.put(1, contacts.spheres, contacts.sphere_count);
       out.put(2, contacts.triangles, contacts.triangle_count);
     } else if (asked_.question == Question::kSteps) {
-      sc_steps steps{};
-      require(sc_find_steps(body, other, &query, &steps));
-      out.put(0, steps.items, steps.count);
+      const sc_step_contact* steps = nullptr;
+      std::size_t count = 0;
+      require(sc_find_steps(body, other, &query, &steps, &count));
+      out.put(0, steps, count);
     } else if (asked_.question == Question::kBounds) {
       Vec3 corners[2];
       require(sc_get_bounds(body, &corners[0], &corners[1]));
@@ -83,7 +84,7 @@ class Asker {
       require(sc_find_in_ground(body, &asked_.ground, &query, &found));
     } else {
       Query all = query;
-      all.detail = SC_DETAIL_FULL;
+      all.full = 1;
       find_contacts(i, all);  // two parts that have more triangles than a body has room for are measured whole
       require(sc_find_penetrations(bodies_[0].handle(), other, &query, &found));
     }
@@ -188,7 +189,7 @@ py::list ask(const LoadedModel& model, int question, const py::tuple& poses, con
   };
   Query& q = asked.query;
   q.scope = query["scope"].cast<Scope>();
-  q.detail = query["detail"].cast<Detail>();
+  q.full = query["full"].cast<bool>() ? 1 : 0;
   q.classes = query["classes"].cast<std::uint32_t>();
   q.limit = query["limit"].cast<std::size_t>();
   q.tolerance = query["tolerance"].cast<float>();
@@ -201,14 +202,15 @@ py::list ask(const LoadedModel& model, int question, const py::tuple& poses, con
     q.previous =
         reinterpret_cast<Penetration*>(checked(*previous, {q.previous_count * sizeof(Penetration)}, "previous"));
   }
-  std::vector<std::uint64_t> ignored(sc_pair_words(&model.asset()));
-  Filter filter{ignored.data(), ignored.size()};
+  const AssetInfo info = sc_asset_get_info(&model.asset());
+  std::vector<std::uint64_t> ignored(info.ignored_pairs, info.ignored_pairs + sc_pair_words(&model.asset()));
   if (!query["ignored_spheres"].is_none()) {
-    require(sc_reset_filter(&model.asset(), &filter));
     for (const auto& [a, b] : query["ignored_spheres"].cast<std::vector<std::pair<std::uint32_t, std::uint32_t>>>()) {
-      require(sc_ignore_pair(&model.asset(), &filter, a, b, 1));
+      const std::size_t low = std::min(a, b), high = std::max(a, b), bit = high * (high - 1) / 2 + low;
+      require(low != high && high < info.sphere_count ? Status{} : Status{SC_BAD_VALUE, SC_FIELD_INDEX});
+      ignored[bit / 64] |= std::uint64_t{1} << bit % 64;
     }
-    q.filter = &filter;
+    q.ignored_pairs = ignored.data();
   }
   Rule rule = sc_default_rule();
   const auto limits = query["rule"].cast<std::vector<float>>();

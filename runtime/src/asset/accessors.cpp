@@ -139,6 +139,7 @@ AssetInfo AssetView::info() const noexcept {
   info.forward = to_vec3(frame.forward());
   info.height = frame.height();
   info.metres_per_unit = source.metres_per_unit();
+  info.ignored_pairs = ignored().data;
   return info;
 }
 
@@ -156,7 +157,7 @@ RegionView AssetView::region(std::size_t i) const noexcept {
 
 BodyPart AssetView::part(std::size_t i) const noexcept {
   const schema::Part& part = *at(*root_->parts(), i);
-  return {part.name()->c_str(), static_cast<Side>(part.side()), part.bone(), part.parent(), part.mobility()};
+  return {part.name()->c_str(), static_cast<std::int32_t>(part.side()), part.bone(), part.parent(), part.mobility()};
 }
 
 std::size_t AssetView::chain_count() const noexcept { return root_->chains()->size(); }
@@ -189,8 +190,6 @@ using namespace spherechain;
 
 extern "C" {
 
-int sc_asset_is_open(const sc_asset* asset) noexcept { return asset != nullptr && view_of(*asset).is_open() ? 1 : 0; }
-
 sc_asset_info sc_asset_get_info(const sc_asset* asset) noexcept { return view_of(*asset).info(); }
 
 sc_rest_sphere sc_asset_sphere(const sc_asset* asset, size_t index) noexcept {
@@ -199,7 +198,7 @@ sc_rest_sphere sc_asset_sphere(const sc_asset* asset, size_t index) noexcept {
     return {};
   }
   const RestSphere& s = spheres[index];
-  return {s.center, s.radius, s.detect_radius, static_cast<sc_side>(s.side), s.region, s.level, s.part};
+  return {s.center, s.radius, s.detect_radius, s.side, s.region, s.level, s.part};
 }
 
 sc_bone sc_asset_bone(const sc_asset* asset, size_t index) noexcept {

@@ -131,5 +131,6 @@ class AssetView {
 static_assert(sizeof(AssetView) <= sizeof(sc_asset) && alignof(AssetView) <= alignof(sc_asset));
 
 inline const AssetView& view_of(const sc_asset& asset) { return *reinterpret_cast<const AssetView*>(&asset); }
+inline bool is_open(const sc_asset* asset) { return asset != nullptr && view_of(*asset).is_open(); }
 
 }  // namespace spherechain

@@ -88,8 +88,6 @@ Status AssetView::open(const void* data, std::size_t size, Message& message) noe
 
 extern "C" {
 
-uint32_t sc_abi_version(void) noexcept { return SC_ABI_VERSION; }
-
 sc_status sc_asset_open(sc_asset* asset, uint32_t abi, const void* data, size_t size, char* message,
                         size_t message_size) noexcept {
   using namespace spherechain;

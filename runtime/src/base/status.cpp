@@ -46,7 +46,7 @@ constexpr std::pair<sc_field, const char*> kFieldNames[] = {
     {SC_FIELD_TARGET, "target"},
     {SC_FIELD_SPHERES, "spheres"},
     {SC_FIELD_TABLE, "table"},
-    {SC_FIELD_FILTER, "filter"},
+    {SC_FIELD_IGNORED_PAIRS, "ignored_pairs"},
     {SC_FIELD_PAIRS, "pairs"},
     {SC_FIELD_BITS, "bits"},
     {SC_FIELD_SCOPE, "scope"},

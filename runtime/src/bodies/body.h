@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/src/asset/asset_view.h"
+#include "runtime/src/base/filter.h"
 #include "runtime/src/bodies/model.h"
 #include "runtime/src/penetrations/penetration_jobs.h"
 #include "spherechain/body.h"
@@ -39,6 +40,7 @@ struct sc_body {
   sc_contacts contacts;  // of the last question
   bool has_contacts;     // they are all of this body with itself, in this pose and that scope
   sc_scope contacts_scope;
+  spherechain::Filter filter;  // of the query that is being answered
 };
 
 namespace spherechain {

@@ -12,6 +12,7 @@
 #include "runtime/src/contacts/part_table.h"
 #include "runtime/src/inside/inside_job.h"
 #include "runtime/src/pairs/detect_job.h"
+#include "runtime/src/pairs/filter.h"
 #include "runtime/src/penetrations/measure.h"
 #include "runtime/src/penetrations/penetration_jobs.h"
 #include "runtime/src/refit/refit_job.h"
@@ -44,12 +45,18 @@ Status check_query(const sc_query* query, const sc_body* other) {
   }
   constexpr std::uint32_t kClasses = (1U << (SC_CLASS_INSIDE + 1)) - 1;
   const bool has_parts = query->ignored_parts != nullptr || query->ignored_parts_of_other != nullptr;
-  const bool is_known = (query->detail == SC_DETAIL_QUICK || query->detail == SC_DETAIL_FULL) &&
-                        (query->classes == 0 || (query->classes & kClasses) != 0);
-  return !is_known                                      ? refuse(SC_BAD_VALUE, SC_FIELD_QUERY)
-         : other == nullptr && has_parts                ? refuse(SC_BAD_VALUE, SC_FIELD_IGNORED_PARTS)
-         : other != nullptr && query->filter != nullptr ? refuse(SC_BAD_VALUE, SC_FIELD_FILTER)
-                                                        : done();
+  const bool is_known =
+      (query->full == 0 || query->full == 1) && (query->classes == 0 || (query->classes & kClasses) != 0);
+  return !is_known                                             ? refuse(SC_BAD_VALUE, SC_FIELD_QUERY)
+         : other == nullptr && has_parts                       ? refuse(SC_BAD_VALUE, SC_FIELD_IGNORED_PARTS)
+         : other != nullptr && query->ignored_pairs != nullptr ? refuse(SC_BAD_VALUE, SC_FIELD_IGNORED_PAIRS)
+                                                               : done();
+}
+
+// The pairs of spheres that a query leaves out, for its jobs; null: the asset's.
+const Filter* filter_of(sc_body& body, const sc_query& query) {
+  body.filter = filter_of(asset_of(body), query.ignored_pairs);
+  return query.ignored_pairs == nullptr ? nullptr : &body.filter;
 }
 
 sc_query query_of(const sc_query* query) { return query == nullptr ? sc_query{} : *query; }
@@ -118,7 +125,7 @@ Status find_contacts(sc_body& body, const sc_body* other, const sc_query& query,
     job.pose = body.now.pose;
     job.skin_table = body.model->skin_table;
     job.scope = query.scope;
-    job.filter = query.filter;
+    job.filter = filter_of(body, query);
     job.part_pairs = part_pairs;
     return run_contacts(body, query, lists_all, is_round, job);
   }
@@ -136,7 +143,7 @@ Status find_contacts(sc_body& body, const sc_body* other, const sc_query& query,
 // Keeps a body's contacts with itself between questions. Contacts with another body are not kept: it may have been
 // replaced by a new body at the same address.
 Status know_contacts(sc_body& body, const sc_body* other, const sc_query& query) {
-  const bool is_kept = other == nullptr && query.filter == nullptr && query.part_pairs == nullptr;
+  const bool is_kept = other == nullptr && query.ignored_pairs == nullptr && query.part_pairs == nullptr;
   if (is_kept && body.has_contacts && body.contacts_scope == query.scope) {
     return done();
   }
@@ -175,8 +182,8 @@ Status pair_spheres(sc_body& body, const sc_query& query, sc_radius radius, Dete
   job.sphere_count = body.spheres.size;
   job.radius = radius;
   job.target = query.target;
-  job.filter = query.filter;
-  job.table = query.filter == nullptr && radius == SC_RADIUS_DETECT ? body.model->detect_table : nullptr;
+  job.filter = filter_of(body, query);
+  job.table = query.ignored_pairs == nullptr && radius == SC_RADIUS_DETECT ? body.model->detect_table : nullptr;
   job.pairs = body.sphere_pairs.data;
   job.pair_capacity = body.sphere_pairs.size;
   return job.run();
@@ -200,7 +207,7 @@ Status find_insides(sc_body& body, const sc_body* other, const sc_query& query, 
   }
   job.body = side_of(body, query.ignored_parts);
   job.skin = other == nullptr ? job.body : side_of(*other, query.ignored_parts_of_other);
-  job.filter = query.filter;
+  job.filter = filter_of(body, query);
   job.are_one = other == nullptr;
   job.centers = {body.spheres.data, body.spheres.size};
   job.pairs = {pairs.pairs, std::min(pairs.pair_count, pairs.pair_capacity)};
@@ -248,7 +255,7 @@ Status run_penetrations(sc_body& body, const sc_query& query, const MeasureJob& 
   job.contact_count = body.contacts.triangle_count;
   job.previous = query.previous;
   job.previous_count = query.previous_count;
-  job.quick = query.detail == SC_DETAIL_FULL ? 0 : 1;
+  job.quick = 1 - query.full;
   job.rule = query.rule;
   job.classes = classes_of(query);
   job.scratch = body.scratch;
@@ -269,7 +276,7 @@ Status measure_contacts(sc_body& body, const sc_body* other, const sc_query& que
     job.pose = body.now.pose;
     job.skin_table = body.model->skin_table;
     job.scope = query.scope;
-    job.filter = query.filter;
+    job.filter = filter_of(body, query);
     return run_penetrations(body, query, insides, list, total, job);
   }
   const std::size_t words = measure_words(asset_of(body), asset_of(*other), false, body.contacts.triangle_count);
@@ -378,8 +385,7 @@ sc_status sc_find_contacts(sc_body* body, const sc_body* other, const sc_query* 
     return status;
   }
   const sc_query of = query_of(query);
-  status =
-      of.detail == SC_DETAIL_FULL ? know_contacts(*body, other, of) : find_contacts(*body, other, of, false, false);
+  status = of.full != 0 ? know_contacts(*body, other, of) : find_contacts(*body, other, of, false, false);
   if (status == SC_OK) {
     *found = body->contacts;
   }
@@ -415,8 +421,11 @@ sc_status sc_find_sphere_pairs(sc_body* body, const sc_query* query, sc_sphere_p
   return done();
 }
 
-sc_status sc_find_steps(sc_body* body, const sc_body* other, const sc_query* query, sc_steps* found) noexcept {
-  Status status = begin(body, other, found);
+sc_status sc_find_steps(sc_body* body, const sc_body* other, const sc_query* query, const sc_step_contact** steps,
+                        size_t* count) noexcept {
+  const Status no_count = begin(body, other, count);
+  Status status = begin(body, other, steps);
+  status = status == SC_OK ? no_count : status;
   status = status == SC_OK ? check_query(query, other) : status;
   if (status != SC_OK) {
     return status;
@@ -448,7 +457,7 @@ sc_status sc_find_steps(sc_body* body, const sc_body* other, const sc_query* que
     return status;
   }
   job.target = of.target;
-  job.filter = other == nullptr ? of.filter : nullptr;
+  job.filter = other == nullptr ? filter_of(*body, of) : nullptr;
   job.tolerance = of.tolerance;
   job.scratch = body->scratch;
   job.scratch_words = body->scratch_words;
@@ -456,7 +465,8 @@ sc_status sc_find_steps(sc_body* body, const sc_body* other, const sc_query* que
   job.contact_capacity = body->steps.size;
   const Status ran = job.run();
   if (ran == SC_OK) {
-    *found = {job.contacts, job.contact_count};
+    *steps = job.contacts;
+    *count = job.contact_count;
   }
   return ran;
 }

@@ -4,10 +4,10 @@
 
 #include <cstddef>
 
+#include "runtime/src/base/filter.h"
 #include "runtime/src/clusters/posed_clusters.h"
 #include "runtime/src/pose/pose.h"
 #include "runtime/src/skin/job_body.h"
-#include "spherechain/filter.h"
 
 namespace spherechain {
 

@@ -11,9 +11,9 @@
 #include <cstdint>
 
 #include "runtime/src/asset/asset_view.h"
+#include "runtime/src/base/filter.h"
 #include "runtime/src/skin/job_body.h"
 #include "spherechain/contacts.h"
-#include "spherechain/filter.h"
 
 namespace spherechain {
 

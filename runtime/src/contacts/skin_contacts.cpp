@@ -27,7 +27,7 @@ Status check_candidates(const SkinContactJob& job, std::size_t sphere_count) {
     return done();
   }
   return job.scope != SC_SCOPE_APART ? refuse(SC_BAD_VALUE, SC_FIELD_SCOPE)
-         : job.filter != nullptr     ? refuse(SC_BAD_VALUE, SC_FIELD_FILTER)
+         : job.filter != nullptr     ? refuse(SC_BAD_VALUE, SC_FIELD_IGNORED_PAIRS)
                                      : done();
 }
 

@@ -33,12 +33,13 @@ MemoryRange range_of_instances(const AssetView& asset, const CrowdJob& job) {
 }
 
 bool is_aliased(const AssetView& asset, const CrowdJob& job) {
+  const Filter filter = filter_of(asset, job.ignored_pairs);
   return any_shared({range_of(Span<std::uint32_t>{job.counts, job.count_capacity}),
                      range_of(Span<std::uint64_t>{job.bits, job.bit_words}),
                      range_of(Span<std::uint64_t>{job.part_pairs, job.part_pair_words}),
                      range_of(Span<CrowdPair>{job.pairs, job.pair_capacity}),
                      range_of(Span<std::uint64_t>{job.scratch, job.scratch_words})},
-                    {range_of_instances(asset, job), range_of(asset.ignored()), range_of(job.filter)});
+                    {range_of_instances(asset, job), range_of(asset.ignored()), range_of(&filter)});
 }
 
 Status check_instances(const AssetView& asset, const CrowdJob& job) {
@@ -113,7 +114,7 @@ std::size_t bone_stride(const AssetView& asset, const CrowdJob& job) {
 
 Status check_crowd(const AssetView& asset, const CrowdJob& job) {
   for (const Status& status : {check_instances(asset, job), check_outputs(asset, job),
-                               job.filter == nullptr ? done() : check_filter(asset, *job.filter)}) {
+                               check_list(job.ignored_pairs, 0, SC_FIELD_IGNORED_PAIRS)}) {
     if (status != SC_OK) {
       return status;
     }

@@ -82,7 +82,7 @@ void choose_pairs(Crowd& crowd) {
   const std::size_t n = crowd.asset.spheres().size;
   const Span<const std::uint64_t> own = crowd.asset.ignored();
   const Span<const std::uint64_t> ignored =
-      job.filter == nullptr ? own : Span<const std::uint64_t>{job.filter->ignored, job.filter->ignored_words};
+      job.ignored_pairs == nullptr ? own : Span<const std::uint64_t>{job.ignored_pairs, own.size};
   std::fill(crowd.wanted.begin(), crowd.wanted.end(), ~std::uint64_t{0});
   std::fill(crowd.is_rest_pair.begin(), crowd.is_rest_pair.end(), std::uint64_t{0});
   for_each_pair(ignored.data, n, [&](std::uint32_t a, std::uint32_t b) {  // few
@@ -262,7 +262,7 @@ using namespace spherechain;
 extern "C" {
 
 size_t sc_crowd_scratch_words(const sc_asset* asset, size_t task_count) noexcept {
-  if (sc_asset_is_open(asset) == 0) {
+  if (!is_open(asset)) {
     return 0;
   }
   const Layout layout(view_of(*asset));
@@ -273,7 +273,7 @@ sc_status sc_detect_crowd(sc_crowd_job* job) noexcept {
   if (job == nullptr) {
     return refuse(SC_NULL, SC_FIELD_NONE);
   }
-  if (sc_asset_is_open(job->asset) == 0) {
+  if (!is_open(job->asset)) {
     return refuse(job->asset == nullptr ? SC_NULL : SC_NOT_OPEN, SC_FIELD_ASSET);
   }
   const AssetView& asset = view_of(*job->asset);

@@ -3,8 +3,8 @@
 // of parts that have such a sphere?
 #pragma once
 
+#include "runtime/src/base/filter.h"
 #include "runtime/src/inside/inside.h"
-#include "spherechain/filter.h"
 
 namespace spherechain {
 

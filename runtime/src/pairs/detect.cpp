@@ -50,7 +50,7 @@ Status check(const DetectJob& job, Target& resolved, SpheresToPair& set) {
   if (job.filter != nullptr) {
     // A table holds the filter that it was made with: another beside it would be ignored in silence.
     const Status status =
-        job.table != nullptr ? refuse(SC_BAD_VALUE, SC_FIELD_FILTER) : check_filter(asset, *job.filter);
+        job.table != nullptr ? refuse(SC_BAD_VALUE, SC_FIELD_IGNORED_PAIRS) : check_filter(asset, *job.filter);
     if (status != SC_OK) {
       return status;
     }

@@ -5,7 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "spherechain/filter.h"
+#include "runtime/src/base/filter.h"
+#include "spherechain/asset.h"
 
 namespace spherechain {
 

@@ -119,12 +119,12 @@ Status read_detect_table(const AssetView& asset, Radius radius, const std::uint6
 }
 
 std::size_t detect_table_words(const Asset* asset) noexcept {
-  return sc_asset_is_open(asset) != 0 ? Content(nullptr, view_of(*asset)).size : 0;
+  return is_open(asset) ? Content(nullptr, view_of(*asset)).size : 0;
 }
 
 Status prepare_detect(const Asset* asset, Radius radius, const Filter* filter, uint64_t* words,
                       size_t word_count) noexcept {
-  if (sc_asset_is_open(asset) == 0) {
+  if (!is_open(asset)) {
     return refuse(asset == nullptr ? SC_NULL : SC_NOT_OPEN, SC_FIELD_ASSET);
   }
   const Status status = check(view_of(*asset), radius, filter, {words, word_count});

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "runtime/src/asset/asset_view.h"
+#include "runtime/src/base/filter.h"
 #include "runtime/src/base/memory.h"
 #include "runtime/src/base/pair_bits.h"
 #include "runtime/src/base/status.h"
-#include "spherechain/filter.h"
 
 namespace spherechain {
 
@@ -22,19 +22,25 @@ Status check_list(const T* data, std::size_t size, sc_field field) {
                                      : done();
 }
 
+// The filter that has a caller's words.
+inline Filter filter_of(const AssetView& asset, const std::uint64_t* ignored_pairs) {
+  return {ignored_pairs, asset.is_open() ? words_for(pairs_of(asset.spheres().size)) : 0};
+}
+
 // Inline, for the CUDA library, which sees only what a shared runtime exports.
 inline Status check_filter(const AssetView& asset, const Filter& filter) {
   if (!asset.is_open()) {
     return refuse(SC_NOT_OPEN, SC_FIELD_ASSET);
   }
   if (is_missing(span_of(filter.ignored, filter.ignored_words))) {
-    return refuse(SC_NULL, SC_FIELD_FILTER);
+    return refuse(SC_NULL, SC_FIELD_IGNORED_PAIRS);
   }
   if (any_misaligned(filter.ignored)) {
-    return refuse(SC_MISALIGNED, SC_FIELD_FILTER);
+    return refuse(SC_MISALIGNED, SC_FIELD_IGNORED_PAIRS);
   }
-  return filter.ignored_words == words_for(pairs_of(asset.spheres().size)) ? done()
-                                                                           : refuse(SC_TOO_SMALL, SC_FIELD_FILTER);
+  return filter.ignored_words == words_for(pairs_of(asset.spheres().size))
+             ? done()
+             : refuse(SC_TOO_SMALL, SC_FIELD_IGNORED_PAIRS);
 }
 
 // The filter's memory; none of a null filter.

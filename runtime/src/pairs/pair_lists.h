@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "runtime/src/asset/asset_view.h"
+#include "runtime/src/base/filter.h"
 #include "runtime/src/pairs/tile.h"
-#include "spherechain/filter.h"
 
 namespace spherechain {
 

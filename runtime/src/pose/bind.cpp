@@ -129,7 +129,7 @@ sc_status sc_bind_joints(const sc_asset* asset, const sc_bone* joints, size_t jo
                          sc_matrix_layout inverse_bind_layout, uint32_t* joint_of_bone, size_t capacity, char* message,
                          size_t message_size) noexcept {
   Message sentence(message, message_size);
-  if (sc_asset_is_open(asset) == 0) {
+  if (!is_open(asset)) {
     sentence.wrong("asset: not open");
     return refuse(asset == nullptr ? SC_NULL : SC_NOT_OPEN, SC_FIELD_ASSET);
   }
@@ -196,7 +196,7 @@ sc_status sc_bind_joints(const sc_asset* asset, const sc_bone* joints, size_t jo
 
 sc_status sc_gather_bones(const sc_asset* asset, const uint32_t* joint_of_bone, const sc_pose* palette,
                           float* bones) noexcept {
-  if (sc_asset_is_open(asset) == 0) {
+  if (!is_open(asset)) {
     return refuse(asset == nullptr ? SC_NULL : SC_NOT_OPEN, SC_FIELD_ASSET);
   }
   if (palette == nullptr || palette->bones == nullptr || joint_of_bone == nullptr || bones == nullptr) {

@@ -29,7 +29,7 @@ uint64_t sc_hash_positions(const float* positions, size_t count, size_t stride) 
 
 sc_status sc_check_source(const sc_asset* asset, size_t buffer, const float* positions, size_t count,
                           size_t stride) noexcept {
-  if (sc_asset_is_open(asset) == 0) {
+  if (!is_open(asset)) {
     return refuse(asset == nullptr ? SC_NULL : SC_NOT_OPEN, SC_FIELD_ASSET);
   }
   const AssetView& view = view_of(*asset);

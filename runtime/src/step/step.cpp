@@ -142,8 +142,8 @@ Status check(const StepJob& job, Target& resolved, StepMemory& room) {
     status = check_motion(job.b, room.b.surface);
   }
   if (status == SC_OK && job.filter != nullptr) {
-    status =
-        has_two(job) ? refuse(SC_BAD_VALUE, SC_FIELD_FILTER) : check_filter(view_of(*job.a.body.asset), *job.filter);
+    status = has_two(job) ? refuse(SC_BAD_VALUE, SC_FIELD_IGNORED_PAIRS)
+                          : check_filter(view_of(*job.a.body.asset), *job.filter);
   }
   if (status != SC_OK) {
     return status;

@@ -10,7 +10,7 @@
 
 #include "paper_threads.h"
 #include "posed_asset.h"
-#include "spherechain/filter.h"
+#include "runtime/src/base/filter.h"
 #include "split_spheres.h"
 
 namespace spherechain::bench {

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "moving_human.h"
+#include "owned_filter.h"
 
 using namespace spherechain;
 using namespace spherechain::test;
@@ -88,19 +89,15 @@ TEST_CASE("pairs of spheres alone are those of all triangle contacts, from each 
 TEST_CASE("pairs of spheres heed a filter's ignored pairs") {
   const sc_asset* asset = moving_human().asset.handle();
   const Pose pose = vertices_of(moving_human().frames.back().vertices);
-  std::vector<std::uint64_t> ignored(sc_pair_words(asset));
-  Filter filter;
-  filter.ignored = ignored.data();
-  filter.ignored_words = ignored.size();
+  OwnedFilter owned(*asset);
   std::vector<Pair> expected = spheres_only(pose);
   REQUIRE(expected.size() > 2);
-  REQUIRE(sc_reset_filter(asset, &filter) == SC_OK);
-  CHECK(spheres_only(pose, SC_TARGET_BEST, &filter) == expected);
+  CHECK(spheres_only(pose, SC_TARGET_BEST, &owned.filter) == expected);
   const Pair first = expected[0];
-  REQUIRE(sc_ignore_pair(asset, &filter, first.a, first.b, 1) == SC_OK);
+  owned.ignore(first.a, first.b);
   expected.erase(expected.begin());
-  CHECK(spheres_only(pose, SC_TARGET_BEST, &filter) == expected);
-  CHECK(all_contacts(pose, &filter).spheres == expected);
+  CHECK(spheres_only(pose, SC_TARGET_BEST, &owned.filter) == expected);
+  CHECK(all_contacts(pose, &owned.filter).spheres == expected);
 }
 
 TEST_CASE("candidates are confirmed where triangles of the two spheres intersect, ignored or not, on every target") {

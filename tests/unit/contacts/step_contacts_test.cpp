@@ -131,11 +131,12 @@ TEST_CASE("spheres that a filter disables, and pairs that it ignores, touch noth
       const std::uint32_t place = truth_surface().of_source[t];
       if (part_of[t] == without) has_part[truth_surface().sphere[place]] = true;
     }
-    REQUIRE(sc_reset_filter(&asset, &owned.filter) == SC_OK);
+    owned.ignored = ignored_pairs_of(asset);
+    owned.filter.ignored = owned.ignored.data();
     for (std::uint32_t s = 0; s < count; ++s) {
       for (std::uint32_t other = 0; other < count && has_part[s]; ++other) {
         if (other != s) {
-          REQUIRE(sc_ignore_pair(&asset, &owned.filter, std::min(s, other), std::max(s, other), 1) == SC_OK);
+          owned.ignore(s, other);
         }
       }
     }

@@ -27,7 +27,8 @@ void add_pairs(const Asset& asset, const std::vector<Sphere>& spheres, Radius ra
 
 std::vector<std::uint64_t> table_of(const Asset& asset, Radius radius, const Filter* filter) {
   std::vector<std::uint64_t> table(cuda::crowd_table_words(asset));
-  REQUIRE(cuda::prepare_crowd(asset, radius, filter, table.data(), table.size()) == SC_OK);
+  REQUIRE(cuda::prepare_crowd(asset, radius, filter == nullptr ? nullptr : filter->ignored, table.data(),
+                              table.size()) == SC_OK);
   return table;
 }
 
@@ -105,11 +106,11 @@ Expected pairs_of_bones(const Asset& asset, const GroupInput& in, Radius radius,
   return out;
 }
 
-void edit_randomly(const Asset& asset, Filter& filter, std::mt19937& random) {
+void edit_randomly(const Asset& asset, OwnedFilter& filter, std::mt19937& random) {
   for (std::uint32_t i = 0; i < view_of(asset).spheres().size; ++i) {
     if (i > 0) {
       const auto other = static_cast<std::uint32_t>(random() % i);
-      REQUIRE(sc_ignore_pair(&asset, &filter, i, other, random() % 2 == 0) == SC_OK);
+      filter.ignore(i, other, random() % 2 == 0);
     }
   }
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "crowd_runs.h"
+#include "owned_filter.h"
 #include "random_poses.h"
 
 namespace spherechain::test {
@@ -36,7 +37,7 @@ Expected pairs_of_spheres(const Asset& asset, const GroupInput& in, Radius radiu
 Expected pairs_of_bones(const Asset& asset, const GroupInput& in, Radius radius, const Filter* filter = nullptr);
 
 // Disables some spheres, pads all, ignores some pairs and takes up others.
-void edit_randomly(const Asset& asset, Filter& filter, std::mt19937& random);
+void edit_randomly(const Asset& asset, OwnedFilter& filter, std::mt19937& random);
 
 // How many there are of each kind (kTwoBones, kThreeBones, kAnyBones).
 struct RunCounts {

@@ -59,7 +59,7 @@ TEST_CASE("a crowd of spheres takes a filter") {
     std::mt19937 random(n);
     const OpenedAsset opened(random_asset(n, n).parts);
     OwnedFilter owned(opened.asset);
-    edit_randomly(opened.asset, owned.filter, random);
+    edit_randomly(opened.asset, owned, random);
     GroupInput in = group_of(opened.asset, SC_RADIUS_DETECT, 70, &owned.filter);
     in.spheres = spheres_of(n, 70, n, random);
     const Expected wanted = pairs_of_spheres(opened.asset, in, SC_RADIUS_DETECT, &owned.filter);
@@ -112,7 +112,7 @@ TEST_CASE("a crowd takes a filter as a single job does") {
   REQUIRE_MESSAGE(opened.status == SC_OK, opened.message);
   std::mt19937 random(5);
   OwnedFilter owned(opened.asset);
-  edit_randomly(opened.asset, owned.filter, random);
+  edit_randomly(opened.asset, owned, random);
   GroupInput in = group_of(opened.asset, SC_RADIUS_DETECT, 50, &owned.filter);
   give_matrices(in, opened.asset, SC_ROWS_3X4, PoseKind::kGentle, 0, random);
   const Expected wanted = pairs_of_bones(opened.asset, in, SC_RADIUS_DETECT, &owned.filter);
@@ -197,21 +197,21 @@ TEST_CASE("a table that cannot be prepared is refused, with its field, and nothi
   std::vector<std::uint64_t> words(cuda::crowd_table_words(opened.asset)), more(words.size() + 2);
   std::uint64_t* const askew = more.data() + (reinterpret_cast<std::uintptr_t>(more.data()) % 16 == 0 ? 1 : 0);
   const Asset closed;
-  const Filter bad;
-  const auto refused = [&](sc_code code, sc_field field, const Asset& asset, Radius radius, const Filter* filter,
-                           std::uint64_t* data, std::size_t size) {
-    const Status status = cuda::prepare_crowd(asset, radius, filter, data, size);
+  const auto refused = [&](sc_code code, sc_field field, const Asset& asset, Radius radius,
+                           const std::uint64_t* ignored, std::uint64_t* data, std::size_t size) {
+    const Status status = cuda::prepare_crowd(asset, radius, ignored, data, size);
     CHECK(status.code == code);
     CHECK(status.field == field);
     CHECK(words == std::vector<std::uint64_t>(words.size()));
   };
   const std::size_t size = words.size();
+  const auto* const bad = reinterpret_cast<const std::uint64_t*>(reinterpret_cast<const char*>(words.data()) + 4);
   refused(SC_NOT_OPEN, SC_FIELD_ASSET, closed, SC_RADIUS_FIT, nullptr, words.data(), size);
   refused(SC_BAD_VALUE, SC_FIELD_RADIUS, opened.asset, static_cast<Radius>(7), nullptr, words.data(), size);
   refused(SC_NULL, SC_FIELD_TABLE, opened.asset, SC_RADIUS_FIT, nullptr, nullptr, size);
   refused(SC_MISALIGNED, SC_FIELD_TABLE, opened.asset, SC_RADIUS_FIT, nullptr, askew, size);
   refused(SC_TOO_SMALL, SC_FIELD_TABLE, opened.asset, SC_RADIUS_FIT, nullptr, words.data(), size - 1);
-  refused(SC_TOO_SMALL, SC_FIELD_FILTER, opened.asset, SC_RADIUS_FIT, &bad, words.data(), size);
+  refused(SC_MISALIGNED, SC_FIELD_IGNORED_PAIRS, opened.asset, SC_RADIUS_FIT, bad, words.data(), size);
   CHECK(cuda::crowd_table_words(closed) == 0);
   CHECK(cuda::crowd_block_bytes(nullptr, true, true, true) == 0);
   CHECK(cuda::crowd_block_bytes(words.data(), true, true, true) == 0);

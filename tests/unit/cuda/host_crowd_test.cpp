@@ -167,10 +167,11 @@ TEST_CASE("a host crowd refuses what it cannot run, before it asks the device, a
   const Device device;
   const OpenedAsset opened(moment_asset(20, 4, 3).parts), boneless(random_asset(20, 3).parts);
   const Asset closed;
-  const Filter bad{};
+  std::uint64_t word = 0;
+  const auto* const bad = reinterpret_cast<const std::uint64_t*>(reinterpret_cast<const char*>(&word) + 4);
   cuda::HostCrowd crowd;
-  const auto open = [&](const Asset& asset, const Filter* filter, std::size_t instances, std::size_t capacity) {
-    const Status status = crowd.open(asset, SC_RADIUS_DETECT, filter, instances, capacity);
+  const auto open = [&](const Asset& asset, const std::uint64_t* ignored, std::size_t instances, std::size_t capacity) {
+    const Status status = crowd.open(asset, SC_RADIUS_DETECT, ignored, instances, capacity);
     CHECK(crowd.is_open() == (status == SC_OK));
     return status;
   };
@@ -180,7 +181,7 @@ TEST_CASE("a host crowd refuses what it cannot run, before it asks the device, a
   CHECK(open(opened.asset, nullptr, 0, 1) == Status{SC_BAD_VALUE, SC_FIELD_INSTANCES});
   CHECK(open(opened.asset, nullptr, 1, 0) == Status{SC_BAD_VALUE, SC_FIELD_PAIRS});
   CHECK(open(opened.asset, nullptr, ~std::size_t{0}, 1) == Status{SC_BAD_VALUE, SC_FIELD_INSTANCES});
-  CHECK(open(opened.asset, &bad, 1, 1) == Status{SC_TOO_SMALL, SC_FIELD_FILTER});
+  CHECK(open(opened.asset, bad, 1, 1) == Status{SC_MISALIGNED, SC_FIELD_IGNORED_PAIRS});
   CHECK(open(opened.asset, nullptr, 1, ~std::size_t{0} / 2) == SC_NO_MEMORY);
   CHECK(fake_device.calls == 0);
 

@@ -115,8 +115,7 @@ TEST_CASE("no job allocates, nor does opening or binding an asset, on any target
     run(sc_asset_open(&asset, SC_ABI_VERSION, opened.bytes.data(), opened.bytes.size(), message, sizeof message));
     refit.asset = detect.asset = crowd.asset = contacts.asset = &asset;
     run(sc_check_source(&asset, SC_WHOLE_SOURCE, tiny.rest.data(), tiny.parts.vertex_count, 12));
-    run(sc_reset_filter(&asset, &owned.filter));
-    run(sc_ignore_parts(&asset, &owned.filter, 0, 1, 1));
+    run(sc_ignore_parts(&asset, owned.ignored.data(), 0, 1, 1));
     run(prepare_detect(&asset, SC_RADIUS_DETECT, &owned.filter, detect_table.data(), detect_table.size()));
     run(prepare_skin(&asset, skin_table.data(), skin_table.size()));
     run(sc_bind_joints(&asset, joints.data(), bones, SC_ROWS_3X4, joint_of_bone.data(), bones, message, 160));

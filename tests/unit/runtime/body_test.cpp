@@ -124,14 +124,14 @@ TEST_CASE("a body finds what the jobs find, with the engine's joints, the worst 
   for (unsigned frame = 0; frame < 10; ++frame) {
     const std::vector<Matrix> bones = Winding::bones(frame), palette = Winding::reversed(bones);
     REQUIRE(body.set_pose(pose_of(palette)) == SC_OK);
-    for (const Detail detail : {SC_DETAIL_QUICK, SC_DETAIL_FULL}) {
+    for (const int full : {0, 1}) {
       Query query;
       query.scope = SC_SCOPE_ALL;
-      query.detail = detail;
+      query.full = full;
       query.classes = kAllClasses;
       const Penetrations found = body.penetrations(query);
       REQUIRE(body.status() == SC_OK);
-      CHECK(same_bits(by_parts(found), expected_of(winding, pose_of(bones), detail == SC_DETAIL_QUICK ? 1 : 0)));
+      CHECK(same_bits(by_parts(found), expected_of(winding, pose_of(bones), 1 - full)));
       CHECK(found.total == found.count);
       CHECK(std::is_sorted(found.begin(), found.end(), [](const Penetration& l, const Penetration& r) {
         return l.kind != r.kind ? l.kind > r.kind : l.measures.depth > r.measures.depth;
@@ -150,9 +150,9 @@ TEST_CASE("a body finds what the jobs find, with the engine's joints, the worst 
       for (std::size_t i = 0; i < worst.count; ++i) CHECK(same_bits<Penetration>({worst.items[i]}, {all[i]}));
     }
     std::set<std::tuple<std::uint32_t, std::uint32_t, PenetrationClass, float>> faults[2];
-    for (const Detail detail : {SC_DETAIL_QUICK, SC_DETAIL_FULL}) {
-      for (const Penetration& one : body.penetrations({SC_SCOPE_ALL, detail})) {
-        faults[detail].emplace(one.part, one.other, one.kind, one.measures.depth);
+    for (const int full : {0, 1}) {
+      for (const Penetration& one : body.penetrations({SC_SCOPE_ALL, full})) {
+        faults[full].emplace(one.part, one.other, one.kind, one.measures.depth);
       }
     }
     CHECK(faults[0] == faults[1]);
@@ -161,7 +161,7 @@ TEST_CASE("a body finds what the jobs find, with the engine's joints, the worst 
     job.pose = pose_of(bones);
     const SkinContacts expected = find_contacts(job);
     Query all;
-    all.detail = SC_DETAIL_FULL;
+    all.full = 1;
     const Contacts contacts = body.contacts(all);
     CHECK(same_bits({contacts.parts, contacts.parts + contacts.part_count}, expected.parts));
     CHECK(same_bits({contacts.spheres, contacts.spheres + contacts.sphere_count}, expected.spheres));
@@ -201,7 +201,7 @@ TEST_CASE("where there is no room for all triangles, or for all penetrations, th
     CHECK(same_bits<Penetration>({worst.begin(), worst.end()},
                                  {expected.begin(), expected.begin() + static_cast<std::ptrdiff_t>(worst.count)}));
     Query lists = query;
-    lists.detail = SC_DETAIL_FULL;
+    lists.full = 1;
     const Contacts contacts = narrow.contacts(lists);
     CHECK(contacts.triangle_total == roomy.contacts(lists).triangle_total);
     overflowed = overflowed || contacts.triangle_count < contacts.triangle_total;
@@ -234,7 +234,7 @@ TEST_CASE("two bodies, the ground and the way between two poses give what the jo
   find.a.pose = pose_of(of_one[1]);
   find.b.pose = pose_of(of_other[1]);
   const SkinContacts contacts = find_contacts(find);
-  const Contacts found = one.contacts(other, {SC_SCOPE_APART, SC_DETAIL_FULL});
+  const Contacts found = one.contacts(other, {SC_SCOPE_APART, 1});
   CHECK(same_bits({found.triangles, found.triangles + found.triangle_count}, contacts.triangles));
   CHECK(found.triangle_count > 0);
   BodyPenetrationJob measure_job;
@@ -332,12 +332,12 @@ TEST_CASE("contacts with another body are of the pose that it has now") {
   Body body(model), other(model);
   REQUIRE(body.set_pose(pose_of(Winding::bones(1))) == SC_OK);
   REQUIRE(other.set_pose(pose_of(Winding::bones(2))) == SC_OK);
-  const std::size_t near = body.contacts(other, {SC_SCOPE_APART, SC_DETAIL_FULL}).triangle_total;
+  const std::size_t near = body.contacts(other, {SC_SCOPE_APART, 1}).triangle_total;
   CHECK(near > 0);
   other = Body(model);  // perhaps where the old one was
   const Transform away{{1000, 0, 0}, {0, 0, 0, 1}, {1, 1, 1}};
   REQUIRE(other.set_pose(pose_of(Winding::bones(2)), away) == SC_OK);
-  CHECK(body.contacts(other, {SC_SCOPE_APART, SC_DETAIL_FULL}).triangle_total == 0);
+  CHECK(body.contacts(other, {SC_SCOPE_APART, 1}).triangle_total == 0);
 }
 
 TEST_CASE("directions of faults stay steady with the last list as history") {
@@ -503,7 +503,7 @@ TEST_CASE("questions about some pairs of body parts find of all answers those of
       };
       Query query;
       query.scope = of_two ? SC_SCOPE_APART : SC_SCOPE_ALL;
-      query.detail = SC_DETAIL_FULL;
+      query.full = 1;
       query.classes = kAllClasses;
       const Contacts contacts = of_two ? body.contacts(other, query) : body.contacts(query);
       std::vector<PartContact> parts;
@@ -653,7 +653,7 @@ TEST_CASE("a question with a wrong argument finds nothing and names the field") 
   };
   refuses(SC_FIELD_SCOPE, [](Query& q) { q.scope = static_cast<Scope>(7); });
   refuses(SC_FIELD_IGNORED_PARTS, [&](Query& q) { q.ignored_parts = no_parts.data(); });
-  refuses(SC_FIELD_QUERY, [](Query& q) { q.detail = static_cast<Detail>(7); });
+  refuses(SC_FIELD_QUERY, [](Query& q) { q.full = 7; });
   refuses(SC_FIELD_QUERY, [](Query& q) { q.classes = 1U << 31; });
   query = {};
   query.part_pairs = no_parts.data();

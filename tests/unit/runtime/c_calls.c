@@ -17,8 +17,6 @@ static uint64_t* words(size_t count) { return (uint64_t*)calloc(count + 1, sizeo
 static void call_accessors(const sc_asset* asset, const float* rest, size_t vertex_count, c_calls_result* out) {
   const sc_asset_info info = sc_asset_get_info(asset);
   size_t count = 0;
-  EXPECT(sc_abi_version() == SC_ABI_VERSION);
-  EXPECT(sc_asset_is_open(asset));
   EXPECT(info.vertex_count == vertex_count);
   EXPECT(sc_asset_sphere(asset, 0).radius > 0);
   EXPECT(strcmp(sc_asset_bone(asset, 0).name, "bone0") == 0);
@@ -38,16 +36,16 @@ static void call_crowd(const sc_asset* asset, const sc_pose* pose, c_calls_resul
   sc_crowd_job crowd = {0};
   sc_scene_job scene = {0};
   sc_scene_body bodies[2] = {{0}, {0}};
-  sc_filter filter = {0};
   uint32_t pair_counts[1];
-  filter.ignored = words(filter.ignored_words = sc_pair_words(asset));
-  OK(sc_reset_filter(asset, &filter));
-  OK(sc_ignore_pair(asset, &filter, 2, 5, 1));
-  OK(sc_ignore_parts(asset, &filter, 0, 1, 1));
+  const size_t word_count = sc_pair_words(asset), bit = 5 * (5 - 1) / 2 + 2; /* of spheres 2 and 5 */
+  uint64_t* ignored_pairs = words(word_count);
+  memcpy(ignored_pairs, sc_asset_get_info(asset).ignored_pairs, word_count * sizeof *ignored_pairs);
+  ignored_pairs[bit / 64] |= (uint64_t)1 << bit % 64;
+  OK(sc_ignore_parts(asset, ignored_pairs, 0, 1, 1));
   crowd.asset = asset;
   crowd.pose = *pose;
   crowd.instance_count = 1;
-  crowd.filter = &filter;
+  crowd.ignored_pairs = ignored_pairs;
   crowd.scratch_words = sc_crowd_scratch_words(asset, 1);
   crowd.scratch = words(crowd.scratch_words);
   crowd.counts = pair_counts;
@@ -64,7 +62,7 @@ static void call_crowd(const sc_asset* asset, const sc_pose* pose, c_calls_resul
   EXPECT(scene.pair_count == 1);
   free(scene.scratch);
   free(crowd.scratch);
-  free(filter.ignored);
+  free(ignored_pairs);
 }
 
 static void call_binding(const sc_asset* asset, const sc_pose* pose, c_calls_result* out) {
@@ -96,7 +94,8 @@ static void call_model_and_body(const void* data, size_t size, const sc_pose* po
   sc_contacts contacts;
   sc_penetrations found;
   sc_sphere_pairs spheres;
-  sc_steps steps;
+  const sc_step_contact* steps;
+  size_t step_count;
   sc_vec3 low, high;
   sc_pose rest = *pose;
   float* rest_bones = (float*)words(12 * pose->bone_count);
@@ -109,13 +108,13 @@ static void call_model_and_body(const void* data, size_t size, const sc_pose* po
   OK(sc_create_model(SC_ABI_VERSION, &def, &model, NULL, 0));
   OK(sc_create_body(model, &body_def, &body));
   OK(sc_create_body(model, NULL, &other));
-  EXPECT(sc_asset_is_open(sc_get_asset(model)));
+  EXPECT(sc_asset_get_info(sc_get_asset(model)).sphere_count > 0);
   EXPECT(sc_check_rest(model, pose, NULL, 0).code == SC_OTHER_BIND);
   EXPECT(sc_get_part_joint(model, 0) == (uint32_t)sc_asset_part(sc_get_asset(model), 0).bone);
   EXPECT(sc_get_triangle(model, 0).part < sc_asset_get_info(sc_get_asset(model)).part_count);
   OK(sc_set_pose(body, pose, NULL));
   OK(sc_set_pose(other, pose, NULL));
-  query.detail = SC_DETAIL_FULL;
+  query.full = 1;
   OK(sc_find_contacts(body, NULL, &query, &contacts));
   memcpy(out->parts, contacts.parts, (out->part_count = contacts.part_count) * sizeof *out->parts);
   memcpy(out->triangles, contacts.triangles, (out->triangle_count = contacts.triangle_count) * sizeof *out->triangles);
@@ -139,8 +138,8 @@ static void call_model_and_body(const void* data, size_t size, const sc_pose* po
   for (b = 0; b < 12 * pose->bone_count; ++b) rest_bones[b] = b % 12 % 5 == 0 ? 1.0F : 0.0F;
   rest.bones = rest_bones;
   OK(sc_set_pose(body, &rest, NULL));
-  OK(sc_find_steps(body, NULL, NULL, &steps));
-  memcpy(out->step_contacts, steps.items, (out->step_contact_count = steps.count) * sizeof *out->step_contacts);
+  OK(sc_find_steps(body, NULL, NULL, &steps, &step_count));
+  memcpy(out->step_contacts, steps, (out->step_contact_count = step_count) * sizeof *out->step_contacts);
   free(rest_bones);
   sc_destroy_body(other);
   sc_destroy_body(body);

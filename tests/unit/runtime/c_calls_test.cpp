@@ -31,8 +31,8 @@ TEST_CASE("every function called from C99 gives what C++ gets") {
   const std::vector<Sphere> spheres = refit(opened.asset, pose, SC_RADIUS_DETECT).spheres;
   CHECK(same_bits({c->spheres, c->spheres + 20}, spheres));
   OwnedFilter owned(opened.asset);
-  REQUIRE(sc_ignore_pair(&opened.asset, &owned.filter, 2, 5, 1) == SC_OK);
-  REQUIRE(sc_ignore_parts(&opened.asset, &owned.filter, 0, 1, 1) == SC_OK);
+  owned.ignore(2, 5);
+  REQUIRE(sc_ignore_parts(&opened.asset, owned.ignored.data(), 0, 1, 1) == SC_OK);
   CHECK(same_bits({c->pairs, c->pairs + c->pair_count}, detect(opened.asset, spheres, SC_RADIUS_DETECT).pairs));
   const std::vector<Pair> pairs = detect(opened.asset, spheres, SC_RADIUS_DETECT, SC_TARGET_BEST, &owned.filter).pairs;
   CHECK(!pairs.empty());

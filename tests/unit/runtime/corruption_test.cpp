@@ -29,7 +29,7 @@ void check_each(const AssetParts& valid, const std::vector<Corruption>& corrupti
     INFO("message:  ", opened.message);
     CHECK(opened.status == SC_CORRUPT);
     CHECK(opened.message.find(corruption.message) == 0);
-    CHECK(sc_asset_is_open(&opened.asset) == 0);
+    CHECK(!is_open(&opened.asset));
   }
 }
 

@@ -138,17 +138,16 @@ TEST_CASE("a crowd's pairs are each instance's own, on every target, in any numb
   }
 }
 
-TEST_CASE("a crowd takes a filter as a single job does") {
+TEST_CASE("a crowd takes ignored pairs as a single job does") {
   std::mt19937 random(5);
   const OpenedAsset opened(random_asset(70, 5).parts);
   OwnedFilter owned(opened.asset);
-  Filter& filter = owned.filter;
   for (std::uint32_t b = 1; b < 70; ++b) {
     const auto a = static_cast<std::uint32_t>(random() % b);
-    REQUIRE(sc_ignore_pair(&opened.asset, &filter, a, b, random() % 2) == SC_OK);
+    owned.ignore(a, b, random() % 2 != 0);
   }
   const Crowd crowd(opened.asset, 40, 0, random);
-  const Expected wanted = crowd.expected(SC_RADIUS_DETECT, &filter);
+  const Expected wanted = crowd.expected(SC_RADIUS_DETECT, &owned.filter);
   CHECK(!wanted.pairs.empty());
   for (const Target target : supported_targets()) {
     Run run(crowd, 3);
@@ -156,7 +155,7 @@ TEST_CASE("a crowd takes a filter as a single job does") {
     run.job.pairs = pairs.data();
     run.job.pair_capacity = pairs.size();
     run.job.target = target;
-    run.job.filter = &filter;
+    run.job.ignored_pairs = owned.ignored.data();
     run.job.instance_stride = 0;
     REQUIRE(run.job.run() == SC_OK);
     CHECK(same_bits(pairs, wanted.pairs));

@@ -38,13 +38,13 @@ TEST_CASE("a table keeps the filter it was prepared with, and takes no other bes
   const std::vector<Sphere> heap(6, {0, 0, 0, 1});
   OwnedFilter owned(opened.asset);
   for (std::uint32_t b = 1; b < 6; ++b) {
-    for (std::uint32_t a = 0; a < b; ++a) sc_ignore_pair(&opened.asset, &owned.filter, a, b, b != 5 || a == 4);
+    for (std::uint32_t a = 0; a < b; ++a) owned.ignore(a, b, b != 5 || a == 4);
   }
   const Table table = table_of(opened.asset, &owned.filter);
   DetectJob job = job_of(opened.asset, heap, table);
   REQUIRE(job.run() == SC_OK);
   CHECK(job.pair_count == 4);  // (0, 5) to (3, 5)
-  REQUIRE(sc_ignore_pair(&opened.asset, &owned.filter, 0, 5, 1) == SC_OK);
+  owned.ignore(0, 5);
   REQUIRE(job.run() == SC_OK);
   CHECK(job.pair_count == 4);
   const Table edited = table_of(opened.asset, &owned.filter);
@@ -52,7 +52,7 @@ TEST_CASE("a table keeps the filter it was prepared with, and takes no other bes
   REQUIRE(job.run() == SC_OK);
   CHECK(job.pair_count == 3);
   job.filter = &owned.filter;
-  CHECK(job.run() == sc_status{SC_BAD_VALUE, SC_FIELD_FILTER});
+  CHECK(job.run() == sc_status{SC_BAD_VALUE, SC_FIELD_IGNORED_PAIRS});
 }
 
 TEST_CASE("a table of another asset or radius, or none at all, is refused") {

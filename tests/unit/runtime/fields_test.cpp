@@ -193,7 +193,7 @@ TEST_CASE("a detection names what it cannot use") {
       {SC_NULL, SC_FIELD_BITS, [](J& j) { j.bits = nullptr; }},
       {SC_MISALIGNED, SC_FIELD_BITS, [](J& j) { j.bits = askew(j.bits); }},
       {SC_BAD_VALUE, SC_FIELD_BITS, [](J& j) { ++j.bit_words; }},
-      {SC_BAD_VALUE, SC_FIELD_FILTER, [&](J& j) { j.table = table.data(); }},
+      {SC_BAD_VALUE, SC_FIELD_IGNORED_PAIRS, [&](J& j) { j.table = table.data(); }},
       {SC_MISALIGNED, SC_FIELD_TABLE,
        [&](J& j) {
          j.filter = nullptr;
@@ -293,7 +293,7 @@ TEST_CASE("a search for skin contacts names what it cannot use") {
       {SC_BAD_VALUE, SC_FIELD_CANDIDATES, bad(turned)},
       {SC_BAD_VALUE, SC_FIELD_CANDIDATES, bad(past)},
       {SC_BAD_VALUE, SC_FIELD_SCOPE, with_candidates([](J& j) { j.scope = SC_SCOPE_ALL; })},
-      {SC_BAD_VALUE, SC_FIELD_FILTER, with_candidates([&](J& j) { j.filter = &owned.filter; })},
+      {SC_BAD_VALUE, SC_FIELD_IGNORED_PAIRS, with_candidates([&](J& j) { j.filter = &owned.filter; })},
       {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.spheres = s.output<Pair>(399); }},
       {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.parts = as<PartContact>(scratch.data()); }},
       {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.scratch = table.data(); }},
@@ -370,12 +370,12 @@ TEST_CASE("a step names what it cannot use") {
       {SC_BAD_VALUE, SC_FIELD_TOLERANCE, [](J& j) { j.tolerance = 1.5F; }},
       {SC_BAD_VALUE, SC_FIELD_TOLERANCE, [](J& j) { j.tolerance = kNan; }},
       {SC_BAD_VALUE, SC_FIELD_TOLERANCE, [](J& j) { j.tolerance = kInfinity; }},
-      {SC_BAD_VALUE, SC_FIELD_FILTER,
+      {SC_BAD_VALUE, SC_FIELD_IGNORED_PAIRS,
        [&](J& j) {
          other(j);
          j.filter = &owned.filter;
        }},
-      {SC_TOO_SMALL, SC_FIELD_FILTER,
+      {SC_TOO_SMALL, SC_FIELD_IGNORED_PAIRS,
        [](J& j) {
          static const Filter empty{};
          j.filter = &empty;
@@ -464,7 +464,7 @@ TEST_CASE("a crowd names what it cannot use") {
   job.bit_words = words;
   job.pairs = s.output<CrowdPair>(1000);
   job.pair_capacity = 4000;
-  job.filter = &owned.filter;
+  job.ignored_pairs = owned.ignored.data();
   job.pose = s.pose;
   job.pose.bones = matrices[0].data();
   using J = CrowdJob;
@@ -490,11 +490,7 @@ TEST_CASE("a crowd names what it cannot use") {
       {SC_BAD_VALUE, SC_FIELD_BITS, [](J& j) { --j.bit_words; }},
       {SC_NULL, SC_FIELD_PAIRS, [](J& j) { j.pairs = nullptr; }},
       {SC_MISALIGNED, SC_FIELD_PAIRS, [](J& j) { j.pairs = askew(j.pairs); }},
-      {SC_TOO_SMALL, SC_FIELD_FILTER,
-       [](J& j) {
-         static const Filter empty{};
-         j.filter = &empty;
-       }},
+      {SC_MISALIGNED, SC_FIELD_IGNORED_PAIRS, [](J& j) { j.ignored_pairs = askew(j.ignored_pairs); }},
       {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.bits = s.output<std::uint64_t>(1); }},
       {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.pairs = as<CrowdPair>(buffers.scratch.data()); }},
       {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.counts = as<std::uint32_t>(owned.ignored.data()); }},

@@ -23,7 +23,7 @@ std::vector<T> to_vector(Span<const T> span) {
 TEST_CASE("a valid asset opens, with no message") {
   const OpenedAsset opened(random_asset(12, 1).parts);
   CHECK(opened.status == SC_OK);
-  CHECK(sc_asset_is_open(&opened.asset) == 1);
+  CHECK(is_open(&opened.asset));
   CHECK(opened.message.empty());
 }
 
@@ -172,7 +172,7 @@ TEST_CASE("an asset tells its bones, parts and morph targets, and zeros of those
 TEST_CASE("of an asset that is not open all is zero, and what it takes is nothing") {
   const Asset closed{};
   for (const Asset* asset : {&closed, static_cast<const Asset*>(nullptr)}) {
-    CHECK(sc_asset_is_open(asset) == 0);
+    CHECK(!is_open(asset));
     CHECK(sc_pair_words(asset) == 0);
     CHECK(detect_table_words(asset) == 0);
     CHECK(skin_table_words(asset) == 0);
@@ -205,7 +205,7 @@ TEST_CASE("an asset that fails to open is closed, whatever it was before") {
   Asset asset = opened.asset;
   CHECK(sc_asset_open(&asset, SC_ABI_VERSION, bytes.data(), bytes.size(), nullptr, 0) ==
         sc_status{SC_NOT_AN_ASSET, SC_FIELD_DATA});
-  CHECK(sc_asset_is_open(&asset) == 0);
+  CHECK(!is_open(&asset));
 }
 
 TEST_CASE("a program compiled with other headers is refused, and gets both versions") {
@@ -215,7 +215,6 @@ TEST_CASE("a program compiled with other headers is refused, and gets both versi
   CHECK(sc_asset_open(&asset, SC_ABI_VERSION - 1, opened.bytes.data(), opened.bytes.size(), message, 160) ==
         SC_WRONG_ABI);
   CHECK(std::string(message).find("ABI version " + std::to_string(SC_ABI_VERSION - 1)) != std::string::npos);
-  CHECK(sc_abi_version() == SC_ABI_VERSION);
 }
 
 }  // namespace spherechain::test

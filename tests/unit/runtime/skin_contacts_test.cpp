@@ -287,7 +287,7 @@ TEST_CASE("a filter's ignored pairs stand for the asset's") {
     for (std::uint32_t a = 0; a < b; ++a) {
       if (random() % 3 != 0) continue;
       const bool on = random() % 2 == 0;
-      REQUIRE(sc_ignore_pair(&opened.asset, &owned.filter, a, b, on ? 1 : 0) == SC_OK);
+      owned.ignore(a, b, on);
       on ? (void)ignored.insert({a, b}) : (void)ignored.erase({a, b});
     }
   }

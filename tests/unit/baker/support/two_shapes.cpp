@@ -203,7 +203,7 @@ std::vector<spherechain::Penetration> TwoShapes::ask(const Place& place, const P
   for (const spherechain::Target target : spherechain::supported_targets()) {
     spherechain::Query query;
     query.scope = scope;
-    query.detail = SC_DETAIL_FULL;
+    query.full = 1;
     query.classes = ~0U;
     query.target = target;
     REQUIRE(body.set_pose(pose) == SC_OK);

@@ -46,13 +46,13 @@ export async function openLive(base64, { unitsPerMm }) {
       const start = performance.now();
       bones.set(palette);
       body.setPose(bones, { morphWeights: morphs });
-      const words = body.contacts({ detail: 'full' }).triangles;
+      const words = body.contacts({ full: true }).triangles;
       const count = words.length / 12, pairs = new Uint32Array(2 * count);
       for (let i = 0; i < count; ++i) pairs.set([words[12 * i], words[12 * i + 1]], 2 * i);
       const between = performance.now();
       const measures = new Map();
       const { classes } = runtime;
-      const found = body.penetrations(isQuick ? { classes } : { classes, detail: 'full', previous });
+      const found = body.penetrations(isQuick ? { classes } : { classes, full: true, previous });
       for (const one of found) measures.set(keyOf([one.part, one.other]), measure(one, isQuick));
       if (!isQuick) previous = structuredClone([...found]);
       return { pairs, measures, times: { contacts: between - start, depths: performance.now() - between } };
