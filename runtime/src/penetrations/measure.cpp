@@ -426,7 +426,6 @@ class Measurer {
     if (!parts.contour.is_closed || (in_.are_one && parts.a == parts.b)) {
       return -1;
     }
-    sweep_.keep_on_way(exit.direction, exit.way.depth);
     const Volume volume = sweep_.volume(exit.direction, exit.way.depth, has_outer_layers_);
     const double area = dot(parts.contour.area, exit.direction);
     const bool is_known = std::abs(volume.area - area) <= kAreaError * volume.total && volume.volume >= 0;
