@@ -397,8 +397,9 @@ class Measurer {
     exit = shortest_exit(sweep_, contour, settings, exit);
     Double3 axes[3];
     axes_of(contour, exit.direction, axes);
-    // A contact that the quick measures alone class as no fault stays no fault: both forms must agree.
-    Penetration out = describe(parts, exit, look(parts, axes), is_likely ? nullptr : &quick);
+    // A contact that the quick measures alone class as no fault stays no fault: both forms must agree. Its extent is
+    // known, and the seen length matters for that alone.
+    Penetration out = describe(parts, exit, look(parts, axes, is_likely), is_likely ? nullptr : &quick);
     Double3 previous = previous_direction(parts);
     if (is_fault(out.kind) && normalize(previous)) {
       set_way(parts, steady_exit(sweep_, contour, settings, exit, previous), out);
@@ -409,15 +410,16 @@ class Measurer {
     return out;
   }
 
-  Seen look(const TwoParts& parts, const Double3 (&axes)[3]) {
-    const Seen seen = memory_.visibility.look(parts.contour, axes, kClearance * height_);
+  Seen look(const TwoParts& parts, const Double3 (&axes)[3], bool wants_length) {
+    const Gaze gaze{kClearance * height_, wants_length};
+    const Seen seen = memory_.visibility.look(parts.contour, axes, gaze);
     // From twice `hidden` on, more changes neither class nor fault depth.
     if (!(seen.share < 2 * double{in_.limits.hidden}) || parts.contour.segments.size == parts.all.size) {
       return seen;
     }
     // In sight below an open coat?
-    const Seen below = memory_.visibility.look(contour_of(memory_.skins, parts.all, rest_height_, memory_.contour),
-                                               axes, kClearance * height_);
+    const Seen below =
+        memory_.visibility.look(contour_of(memory_.skins, parts.all, rest_height_, memory_.contour), axes, gaze);
     return below.share > seen.share ? below : seen;
   }
 
