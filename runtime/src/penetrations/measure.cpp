@@ -380,6 +380,9 @@ class Measurer {
   Penetration measure(TwoParts parts) {
     const Contour& contour = parts.contour;
     limits_ = was_fault(parts) ? &eased_ : &in_.limits;
+    if (lists_faults_alone() && !may_be_fault(*limits_, measures_of(parts))) {
+      return {};
+    }
     if (parts.containment > 0) {
       part_them(parts);
     }
@@ -434,6 +437,27 @@ class Measurer {
     return is_known ? static_cast<float>(volume.volume) : -1;
   }
 
+  bool lists_faults_alone() const { return in_.classes >> SC_CLASS_DEEP_FOLD << SC_CLASS_DEEP_FOLD == in_.classes; }
+
+  // The measurements that need no way out.
+  Measures measures_of(const TwoParts& parts) const {
+    const Contour& contour = parts.contour;
+    Measures out{};
+    out.volume = out.thickness = out.extent = -1;
+    out.contour_length = static_cast<float>(contour.length);
+    out.visible = 1;
+    out.touching = static_cast<float>(contour.touching);
+    out.facing = static_cast<float>(contour.facing);
+    out.rest_distance = static_cast<float>(contour.rest_distance / rest_height_);
+    out.height = static_cast<float>(height_);
+    out.metre = static_cast<float>(metre_);
+    out.relation = relation_of(parts.a, parts.b);
+    out.is_one_piece = contour.is_one_piece ? 1 : 0;
+    out.swallowed = static_cast<float>(parts.swallowed);
+    out.through = parts.passes_through ? 1 : 0;
+    return out;
+  }
+
   // `known`: has the same parts' thickness, and how much is swallowed; or null.
   Penetration describe(const TwoParts& parts, const Exit& exit, const Seen& seen, const Penetration* known) {
     const Contour& contour = parts.contour;
@@ -441,21 +465,9 @@ class Measurer {
     set_way(parts, exit, out);
     // The nearer a part is to being inside, the less it is out once just its contact is gone.
     const double more = std::max(parts.apart - exit.way.depth, 0.0);
-    out.measures = {least_depth(exit.way.depth + parts.containment * more),
-                    -1,
-                    static_cast<float>(contour.length),
-                    static_cast<float>(seen.share),
-                    static_cast<float>(contour.touching),
-                    static_cast<float>(contour.facing),
-                    static_cast<float>(contour.rest_distance / rest_height_),
-                    -1,
-                    -1,
-                    static_cast<float>(height_),
-                    static_cast<float>(metre_),
-                    relation_of(parts.a, parts.b),
-                    contour.is_one_piece ? 1 : 0,
-                    static_cast<float>(parts.swallowed),
-                    parts.passes_through ? 1 : 0};
+    out.measures = measures_of(parts);
+    out.measures.depth = least_depth(exit.way.depth + parts.containment * more);
+    out.measures.visible = static_cast<float>(seen.share);
     if (known != nullptr) {
       out.measures.thickness = known->measures.thickness;
       out.measures.extent = known->measures.extent;
