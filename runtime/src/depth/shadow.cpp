@@ -9,11 +9,22 @@ namespace {
 // Cuts off where `keep`, which is linear, is negative. The cut's edge gets the number `edge`.
 template <typename Keep>
 void clip(Shadow& shadow, int edge, const Keep& keep) {
+  double at[Shadow::kCornersMax];
+  int kept = 0;
+  for (int i = 0; i < shadow.count; ++i) {
+    at[i] = keep(shadow.corners[i]);
+    kept += at[i] >= 0 ? 1 : 0;
+  }
+  if (kept == 0 || kept == shadow.count) {
+    shadow.count = kept;
+    return;
+  }
   Shadow::Corner out[Shadow::kCornersMax];
   int count = 0;
   for (int i = 0; i < shadow.count && count + 2 <= Shadow::kCornersMax; ++i) {
-    const Shadow::Corner &from = shadow.corners[i], &to = shadow.corners[(i + 1) % shadow.count];
-    const double at_from = keep(from), at_to = keep(to);
+    const int next = i + 1 < shadow.count ? i + 1 : 0;
+    const Shadow::Corner &from = shadow.corners[i], &to = shadow.corners[next];
+    const double at_from = at[i], at_to = at[next];
     if (at_from >= 0) {
       out[count++] = from;
     }

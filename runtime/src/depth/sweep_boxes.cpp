@@ -179,9 +179,12 @@ void Sweep::keep_runs(const Side& side, const Side& other, const Reach& reach, B
   }
 }
 
-// Numbers the vertices that the kept triangles use, so that they lie near each other: every view reads them.
+// Numbers the vertices that the triangles of live blocks use, so that they lie near each other: every view reads them.
 void Sweep::list_vertices(const Side& side, Boxes& boxes) {
   for (std::size_t i = 0; i < boxes.count; ++i) {
+    if (boxes.is_live[i / kBlock] == 0) {
+      continue;
+    }
     const std::uint32_t* const corners = side.skin.surface->triangle_vertices.data + 3 * std::size_t{boxes.triangle[i]};
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t vertex = side.first_vertex + corners[k];
