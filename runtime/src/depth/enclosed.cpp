@@ -22,7 +22,7 @@ void Sweep::vote_by(const Corners& triangle, const Double3* points, std::size_t 
       const Double3 &p = t.p[k], &q = t.p[(k + 1) % 3];
       is_over = sign * ((q.x - p.x) * (from.y - p.y) - (q.y - p.y) * (from.x - p.x)) >= 0;
     }
-    const double rise = is_over ? height_at(t, from.x, from.y) - from.z : 0, distance = up ? rise : -rise;
+    const double rise = is_over ? Slope(t).at(from.x, from.y) - from.z : 0, distance = up ? rise : -rise;
     if (distance > 0 && distance < nearest[i]) {
       nearest[i] = distance;
       inside[i] = (up ? sign : -sign) * handedness > 0 ? 1 : 0;

@@ -9,11 +9,22 @@ namespace {
 // Cuts off where `keep`, which is linear, is negative. The cut's edge gets the number `edge`.
 template <typename Keep>
 void clip(Shadow& shadow, int edge, const Keep& keep) {
+  double at[Shadow::kCornersMax];
+  int kept = 0;
+  for (int i = 0; i < shadow.count; ++i) {
+    at[i] = keep(shadow.corners[i]);
+    kept += at[i] >= 0 ? 1 : 0;
+  }
+  if (kept == 0 || kept == shadow.count) {
+    shadow.count = kept;
+    return;
+  }
   Shadow::Corner out[Shadow::kCornersMax];
   int count = 0;
   for (int i = 0; i < shadow.count && count + 2 <= Shadow::kCornersMax; ++i) {
-    const Shadow::Corner &from = shadow.corners[i], &to = shadow.corners[(i + 1) % shadow.count];
-    const double at_from = keep(from), at_to = keep(to);
+    const int next = i + 1 < shadow.count ? i + 1 : 0;
+    const Shadow::Corner &from = shadow.corners[i], &to = shadow.corners[next];
+    const double at_from = at[i], at_to = at[next];
     if (at_from >= 0) {
       out[count++] = from;
     }
@@ -26,19 +37,6 @@ void clip(Shadow& shadow, int edge, const Keep& keep) {
   std::copy(out, out + count, shadow.corners);
   shadow.count = count;
 }
-
-// A triangle's plane in view: z = z0 + x_slope (x - x0) + y_slope (y - y0).
-struct Slope {
-  double x0, y0, z0, x_slope, y_slope;
-
-  explicit Slope(const Corners& t) : x0(t.p[0].x), y0(t.p[0].y), z0(t.p[0].z) {
-    const Double3 e = t.p[1] - t.p[0], f = t.p[2] - t.p[0];
-    const double determinant = e.x * f.y - f.x * e.y;
-    x_slope = (e.z * f.y - f.z * e.y) / determinant;
-    y_slope = (e.x * f.z - f.x * e.z) / determinant;
-  }
-  double at(double x, double y) const { return z0 + (x_slope * (x - x0) + y_slope * (y - y0)); }
-};
 
 // Is b, seen along d, beyond one of a's edges?
 bool is_beside(const Corners& a, const Corners& b, double sign_of_a) {
@@ -55,8 +53,6 @@ bool is_beside(const Corners& a, const Corners& b, double sign_of_a) {
 
 }  // namespace
 
-double height_at(const Corners& t, double x, double y) { return Slope(t).at(x, y); }
-
 View::View(const Double3& direction, const Double3& center) : d(direction), origin(center) {
   const double x = std::abs(d.x), y = std::abs(d.y), z = std::abs(d.z);
   const Double3 aside = x <= y && x <= z ? Double3{1, 0, 0} : y <= z ? Double3{0, 1, 0} : Double3{0, 0, 1};
@@ -65,18 +61,18 @@ View::View(const Double3& direction, const Double3& center) : d(direction), orig
   u = cross(v, d);
 }
 
-Shadow::Shadow(const Corners& a, const Corners& b, double above, double below) {
-  const double turn_a = turn_of(a), turn_b = turn_of(b);
+Shadow::Shadow(const SeenTriangle& seen_a, const SeenTriangle& seen_b, double above, double below) {
+  const Corners &a = seen_a.corners, &b = seen_b.corners;
+  const double turn_a = seen_a.turn, turn_b = seen_b.turn;
   // Heights are those of the plane that is seen more from the front: the other may be seen edge-on.
-  const Double3 normal_a = normal_of(a), normal_b = normal_of(b);
-  stands_on_a = turn_a * turn_a * dot(normal_b, normal_b) >= turn_b * turn_b * dot(normal_a, normal_a);
+  stands_on_a = turn_a * turn_a * seen_b.size >= turn_b * turn_b * seen_a.size;
   const Corners &base = stands_on_a ? a : b, &other = stands_on_a ? b : a;
   const double turn = stands_on_a ? turn_a : turn_b, sign = turn > 0 ? 1 : -1;
   if (!(turn > 0) && !(turn < 0)) {
     return;
   }
   const int base_edge = stands_on_a ? 3 : 0, other_edge = 3 - base_edge;
-  const Slope slope(base);
+  const Slope& slope = stands_on_a ? seen_a.slope : seen_b.slope;
   double least = HUGE_VAL, most = -HUGE_VAL;
   for (int i = 0; i < 3; ++i) {
     const Double3& p = other.p[i];

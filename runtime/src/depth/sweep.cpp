@@ -8,7 +8,46 @@
 namespace spherechain {
 namespace {
 
-constexpr int kPassesMax = 64;  // of hostile input; of bodies a handful
+constexpr int kPassesMax = 64;      // of hostile input; of bodies a handful
+constexpr double kRounding = 1e-6;  // relative; more than that of a number in single precision
+constexpr std::size_t kLanes = 16;
+constexpr std::uint32_t kBits[kLanes] = {1,     2,     4,     8,     0x10,   0x20,   0x40,   0x80,
+                                         0x100, 0x200, 0x400, 0x800, 0x1000, 0x2000, 0x4000, 0x8000};
+
+// A box in view, open on one side along the direction. Rounding makes it larger, never smaller.
+struct OpenBox {
+  float low[3], high[3];
+
+  // Any box that box i meets after it has moved up by more than `move`.
+  template <typename Arrays>
+  static OpenBox above(const Arrays& lows, const Arrays& highs, std::size_t i, double move) {
+    const double at = double{lows[2][i]} + move;
+    return {{lows[0][i], lows[1][i], static_cast<float>(at - kRounding * std::abs(at))},
+            {highs[0][i], highs[1][i], HUGE_VALF}};
+  }
+  // Any box that meets box i after it has moved up by more than `move`.
+  template <typename Arrays>
+  static OpenBox below(const Arrays& lows, const Arrays& highs, std::size_t i, double move) {
+    const double at = double{highs[2][i]} - move;
+    return {{lows[0][i], lows[1][i], -HUGE_VALF},
+            {highs[0][i], highs[1][i], static_cast<float>(at + kRounding * std::abs(at))}};
+  }
+  // Bit k: box `first` + k, which is one of the first `count`, overlaps it.
+  template <typename Arrays>
+  std::uint32_t overlaps(const Arrays& lows, const Arrays& highs, std::size_t first, std::size_t count) const {
+    const float *const low_u = lows[0] + first, *const low_v = lows[1] + first, *const low_d = lows[2] + first;
+    const float *const high_u = highs[0] + first, *const high_v = highs[1] + first, *const high_d = highs[2] + first;
+    std::uint32_t out = 0;
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      const std::uint32_t u0 = low_u[k] <= high[0] ? kBits[k] : 0, u1 = high_u[k] >= low[0] ? kBits[k] : 0;
+      const std::uint32_t v0 = low_v[k] <= high[1] ? kBits[k] : 0, v1 = high_v[k] >= low[1] ? kBits[k] : 0;
+      const std::uint32_t d0 = low_d[k] <= high[2] ? kBits[k] : 0, d1 = high_d[k] >= low[2] ? kBits[k] : 0;
+      out |= u0 & u1 & v0 & v1 & d0 & d1;
+    }
+    // Positions that are not finite meet even the empty boxes past the last.
+    return count - first < kLanes ? out & ((1U << (count - first)) - 1) : out;
+  }
+};
 
 bool is_on(const Span<const std::uint64_t>& bits, std::size_t i) {
   return bits.size > 0 && (bits[i / 64] >> (i % 64) & 1) != 0;
@@ -29,10 +68,7 @@ bool PairRule::counts(std::uint32_t a, std::uint32_t b) const {
       }
     }
   }
-  const std::size_t s = surface->triangle_spheres[a], t = surface->triangle_spheres[b];
-  const std::size_t low = std::min(s, t), high = std::max(s, t);
-  const bool is_neighbour = low == high || is_on(ignored, high * (high - 1) / 2 + low);
-  if (!(is_neighbour ? neighbours : apart)) {
+  if (!may_count(surface->triangle_spheres[a], surface->triangle_spheres[b])) {
     return false;
   }
   if (!layers && are_layers(*surface, cluster_of(*surface, a), cluster_of(*surface, b))) {
@@ -43,10 +79,20 @@ bool PairRule::counts(std::uint32_t a, std::uint32_t b) const {
                              Pair{std::min(p, q), std::max(p, q)});
 }
 
+bool PairRule::may_count(std::size_t sphere_a, std::size_t sphere_b) const {
+  if (surface == nullptr) {
+    return true;
+  }
+  const std::size_t low = std::min(sphere_a, sphere_b), high = std::max(sphere_a, sphere_b);
+  return low == high || is_on(ignored, high * (high - 1) / 2 + low) ? neighbours : apart;
+}
+
 void Sweep::take(WordMemory& memory, const SkinSizes& a, const SkinSizes& b) {
   const std::size_t vertex_count = a.vertices + (skins_.are_one() ? 0 : b.vertices);
   a_.take(memory, a.triangles);
   b_.take(memory, b.triangles);
+  memory.take(seen_a_.entries, SeenTriangles::kCount);
+  memory.take(seen_b_.entries, SeenTriangles::kCount);
   memory.take(vertices_.vertex, vertex_count);
   memory.take(vertices_.place, vertex_count);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -55,9 +101,28 @@ void Sweep::take(WordMemory& memory, const SkinSizes& a, const SkinSizes& b) {
   }
 }
 
-void Sweep::clear() { std::fill(vertices_.place, vertices_.place + skins_.vertex_count(), kNoPlace); }
+void Sweep::clear() {
+  std::fill(vertices_.place, vertices_.place + skins_.vertex_count(), kNoPlace);
+  for (SeenTriangles* const seen : {&seen_a_, &seen_b_}) {
+    for (std::size_t i = 0; i < SeenTriangles::kCount; ++i) {
+      seen->entries[i].key = 0;  // no view has that number
+    }
+  }
+}
 
-void Sweep::look_along(const Double3& direction) { view_ = View(direction, vertices_.origin); }
+void Sweep::look_along(const Double3& direction) {
+  view_ = View(direction, vertices_.origin);
+  ++view_number_;
+}
+
+const SeenTriangle& Sweep::see(SeenTriangles& of, const PosedSkin& skin, std::uint32_t triangle) {
+  SeenTriangles::Entry& entry = of.entries[triangle % SeenTriangles::kCount];
+  const std::uint64_t key = std::uint64_t{view_number_} << 32 | triangle;
+  if (entry.key != key) {
+    entry = {key, SeenTriangle(view_.seen(skin.corners(triangle)))};
+  }
+  return entry.seen;
+}
 
 void Sweep::set_sides(Span<const TriangleRun> a, Span<const TriangleRun> b, const Double3& origin) {
   side_a_ = a;
@@ -75,74 +140,49 @@ void Sweep::keep_on_way(const Double3& direction, double depth) {
         {part(-direction.x), part(-direction.y), part(-direction.z)}});
 }
 
-// Compares kBlock boxes from `first` on with box `i` of the others, in u and v: -1 for each that overlaps it, else 0.
-// Returns 0 if none does.
-std::int32_t Sweep::find_hidden(float* const (&low)[3], float* const (&high)[3], std::size_t first,
-                                float* const (&other_low)[3], float* const (&other_high)[3], std::size_t i,
-                                std::int32_t (&hides)[kBlock]) {
-  const float low_u = other_low[0][i], high_u = other_high[0][i], low_v = other_low[1][i], high_v = other_high[1][i];
-  const float *const lows_u = low[0] + first, *const highs_u = high[0] + first;
-  const float *const lows_v = low[1] + first, *const highs_v = high[1] + first;
-  std::int32_t any = 0;
-  for (std::size_t k = 0; k < kBlock; ++k) {
-    const std::int32_t p0 = lows_u[k] <= high_u ? -1 : 0, p1 = highs_u[k] >= low_u ? -1 : 0;
-    const std::int32_t q0 = lows_v[k] <= high_v ? -1 : 0, q1 = highs_v[k] >= low_v ? -1 : 0;
-    hides[k] = p0 & p1 & q0 & q1;
-    any |= hides[k];
-  }
-  return any;
-}
-
-template <typename Wants, typename Visit>
-void Sweep::for_pairs(std::size_t first, const Wants& wants, const Visit& visit) {
+template <typename Visit>
+void Sweep::for_pairs(std::size_t first, const Moves& moves, const Visit& visit) {
+  static_assert(kBlock == kLanes);
   const std::size_t a_blocks = a_.block_count, b_blocks = b_.block_count;
-  // A lambda: without one the function would be a symbol of the library.
+  // Lambdas: without them these functions would be symbols of the library.
   const auto is_before = [](std::uint32_t block, std::size_t other) { return block < other; };
   const auto start =
       static_cast<std::size_t>(std::lower_bound(b_.block, b_.block + b_blocks, first, is_before) - b_.block);
-  std::int32_t near[kBlock], hidden[kBlock], hides[kBlock];
+  using Lows = float* const(&)[3];
+  const auto may_meet = [&](Lows low_a, Lows high_a, std::size_t a, Lows low_b, Lows high_b, std::size_t b) {
+    return low_a[0][a] <= high_b[0][b] && high_a[0][a] >= low_b[0][b] && low_a[1][a] <= high_b[1][b] &&
+           high_a[1][a] >= low_b[1][b] && double{high_a[2][a]} - double{low_b[2][b]} > moves.from &&
+           double{low_a[2][a]} - double{high_b[2][b]} <= moves.to;
+  };
   for (std::size_t turn = 0; turn < b_blocks; ++turn) {
     const std::size_t q = (start + turn) % b_blocks, b_first = kBlock * b_.block[q];
-    const std::size_t b_end = std::min(b_first + kBlock, b_.count);
-    for (std::size_t p = 0; p < a_blocks; ++p) {
-      if (p % kBlock == 0 && find_hidden(a_.block_low, a_.block_high, p, b_.block_low, b_.block_high, q, near) == 0) {
-        p += kBlock - 1;
-        continue;
-      }
-      // Asks again where a block's triangles got boxes: its own box became smaller.
-      const auto may_meet = [&] {
-        return a_.block_low[0][p] <= b_.block_high[0][q] && a_.block_high[0][p] >= b_.block_low[0][q] &&
-               a_.block_low[1][p] <= b_.block_high[1][q] && a_.block_high[1][p] >= b_.block_low[1][q] &&
-               wants(double{a_.block_low[2][p]} - double{b_.block_high[2][q]},
-                     double{a_.block_high[2][p]} - double{b_.block_low[2][q]});
-      };
-      if (near[p % kBlock] == 0 || !may_meet()) {
-        continue;
-      }
-      if (b_.make_boxes(q, vertices_.seen) && !may_meet()) {
-        continue;
-      }
-      if (a_.make_boxes(p, vertices_.seen) && !may_meet()) {
-        continue;
-      }
-      const std::size_t a_first = kBlock * a_.block[p];
-      if (find_hidden(b_.low, b_.high, b_first, a_.block_low, a_.block_high, p, hidden) == 0) {
-        continue;
-      }
-      for (std::size_t b = b_first; b < b_end; ++b) {
-        if (hidden[b - b_first] == 0 ||
-            !wants(double{a_.block_low[2][p]} - double{b_.high[2][b]},
-                   double{a_.block_high[2][p]} - double{b_.low[2][b]}) ||
-            find_hidden(a_.low, a_.high, a_first, b_.low, b_.high, b, hides) == 0) {
+    for (std::size_t group = 0; group < a_blocks; group += kBlock) {
+      const OpenBox over_b = OpenBox::above(b_.block_low, b_.block_high, q, moves.from);
+      std::uint32_t near = over_b.overlaps(a_.block_low, a_.block_high, group, a_blocks);
+      for (; near != 0; near &= near - 1) {
+        const std::size_t p = group + lowest_bit(near);
+        // Asks again where a block's triangles got boxes: its own box became smaller.
+        const auto blocks_may_meet = [&] {
+          return may_meet(a_.block_low, a_.block_high, p, b_.block_low, b_.block_high, q);
+        };
+        if (!blocks_may_meet() || !may_count(a_.sphere[a_.block[p]], b_.sphere[b_.block[q]]) ||
+            (b_.make_boxes(q, vertices_.seen) && !blocks_may_meet()) ||
+            (a_.make_boxes(p, vertices_.seen) && !blocks_may_meet())) {
           continue;
         }
-        // Positions that are not finite meet even the empty boxes past the last.
-        for (std::size_t k = 0; k < kBlock && a_first + k < a_.count; ++k) {
-          const std::size_t a = a_first + k;
-          if (hides[k] != 0 &&
-              wants(double{a_.low[2][a]} - double{b_.high[2][b]}, double{a_.high[2][a]} - double{b_.low[2][b]}) &&
-              !visit(a_.triangle[a], b_.triangle[b], b_.block[q])) {
-            return;
+        const std::size_t a_first = kBlock * a_.block[p];
+        const OpenBox under_a = OpenBox::below(a_.block_low, a_.block_high, p, moves.from);
+        std::uint32_t met_b = under_a.overlaps(b_.low, b_.high, b_first, b_.count);
+        for (; met_b != 0; met_b &= met_b - 1) {
+          const std::size_t b = b_first + lowest_bit(met_b);
+          const OpenBox over = OpenBox::above(b_.low, b_.high, b, moves.from);
+          std::uint32_t met_a = over.overlaps(a_.low, a_.high, a_first, a_.count);
+          for (; met_a != 0; met_a &= met_a - 1) {
+            const std::size_t a = a_first + lowest_bit(met_a);
+            if (may_meet(a_.low, a_.high, a, b_.low, b_.high, b) &&
+                !visit(a_.triangle[a], b_.triangle[b], b_.block[q])) {
+              return;
+            }
           }
         }
       }
@@ -161,8 +201,8 @@ bool Sweep::may_block(std::uint32_t a, std::uint32_t b, double depth) const {
 }
 
 // Moves the way's end on to where this pair no longer blocks it.
-void Sweep::block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) const {
-  const Corners seen_a = view_.seen(skins_.a.corners(a)), seen_b = view_.seen(skins_.b.corners(b));
+void Sweep::block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) {
+  const SeenTriangle &seen_a = see(seen_a_, skins_.a, a), &seen_b = see(seen_b_, skins_.b, b);
   const Shadow shadow(seen_a, seen_b, depth, depth + gap_);
   double low = HUGE_VAL, high = -HUGE_VAL;
   int last = 0;
@@ -198,7 +238,7 @@ void Sweep::block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) 
     out.normal = -1 * out.normal;
   }
   const double z =
-      shadow.stands_on_a ? height_at(seen_a, corner.x, corner.y) : height_at(seen_b, corner.x, corner.y) + high;
+      shadow.stands_on_a ? seen_a.slope.at(corner.x, corner.y) : seen_b.slope.at(corner.x, corner.y) + high;
   out.point_a = view_.back({corner.x, corner.y, z});
   out.point_b = view_.back({corner.x, corner.y, z - high});
 }
@@ -241,17 +281,16 @@ bool Sweep::find(const Double3& direction, const Contour& contour, double bound,
   for (int i = 0; is_longer && i < kPassesMax && depth < bound; ++i) {
     const double before = depth;
     // The pair that blocked last is likely to block again, so it comes first.
-    for_pairs(
-        first_block_, [&](double low, double high) { return high > depth && low <= depth + gap_; },
-        [&](std::uint32_t a, std::uint32_t b, std::size_t at) {
-          const double was = depth;
-          block(a, b, depth, out);
-          if (depth > was) {
-            remember(out);
-            first_block_ = at;
-          }
-          return depth < bound;
-        });
+    Moves moves{depth, depth + gap_};
+    for_pairs(first_block_, moves, [&](std::uint32_t a, std::uint32_t b, std::size_t at) {
+      block(a, b, depth, out);
+      if (depth > moves.from) {
+        moves = {depth, depth + gap_};
+        remember(out);
+        first_block_ = at;
+      }
+      return depth < bound;
+    });
     is_longer = depth > before;
   }
   remember(out);
@@ -264,28 +303,29 @@ bool Sweep::find(const Double3& direction, const Contour& contour, double bound,
 // b is clear of a after the move, all pairs cancel but those that meet on the way. Integrated over all lines, a pair of
 // triangles adds the volume between their shadows.
 Volume Sweep::volume(const Double3& direction, double depth, bool of_outer_layers) {
+  counts_all_ = true;
+  keep_on_way(direction, depth);
   look_along(direction);
   see_boxes(0);
   Volume out;
-  for_pairs(
-      0, [&](double low, double high) { return high > 0 && low <= depth + gap_; },
-      [&](std::uint32_t a, std::uint32_t b, std::size_t) {
-        if (of_outer_layers && (skins_.a.is_covered(a) || skins_.b.is_covered(b))) {
-          return true;
-        }
-        const Corners seen_a = view_.seen(skins_.a.corners(a)), seen_b = view_.seen(skins_.b.corners(b));
-        Shadow shadow(seen_a, seen_b, 0, depth);
-        shadow.keep_above(0);
-        shadow.keep_below(depth);
-        if (shadow.count > 2) {
-          const double turns = (turn_of(seen_a) > 0) == (turn_of(seen_b) > 0) ? -1 : 1;
-          const double sign = turns * skins_.a.handedness * skins_.b.handedness;
-          out.volume += sign * shadow.volume();
-          out.area += sign * shadow.area();
-          out.total += shadow.area();
-        }
-        return true;
-      });
+  for_pairs(0, {0, depth + gap_}, [&](std::uint32_t a, std::uint32_t b, std::size_t) {
+    if (of_outer_layers && (skins_.a.is_covered(a) || skins_.b.is_covered(b))) {
+      return true;
+    }
+    const SeenTriangle &seen_a = see(seen_a_, skins_.a, a), &seen_b = see(seen_b_, skins_.b, b);
+    Shadow shadow(seen_a, seen_b, 0, depth);
+    shadow.keep_above(0);
+    shadow.keep_below(depth);
+    if (shadow.count > 2) {
+      const double turns = (seen_a.turn > 0) == (seen_b.turn > 0) ? -1 : 1;
+      const double sign = turns * skins_.a.handedness * skins_.b.handedness;
+      out.volume += sign * shadow.volume();
+      out.area += sign * shadow.area();
+      out.total += shadow.area();
+    }
+    return true;
+  });
+  counts_all_ = false;
   return out;
 }
 

@@ -19,6 +19,8 @@ struct PairRule {
   bool apart = true, neighbours = false, layers = true;
 
   bool counts(std::uint32_t a, std::uint32_t b) const;
+  // False if no two triangles of these spheres count.
+  bool may_count(std::size_t sphere_a, std::size_t sphere_b) const;
   bool leaves_out(std::uint32_t cluster) const { return surface != nullptr && !layers && is_buried(*surface, cluster); }
 };
 
@@ -60,7 +62,7 @@ class Sweep {
   // True if one body lies inside the other after b has moved along `way`. `outwards` is -1 if the skins are inside out.
   bool is_enclosed(const Double3& direction, const WayOut& way, const Contour& contour, double outwards);
   // Volume of b inside a, seen along the direction of a way of length `depth`; or only that of the outer layers of
-  // both.
+  // both. Keeps the triangles on that way.
   Volume volume(const Double3& direction, double depth, bool of_outer_layers);
 
  private:
@@ -70,7 +72,9 @@ class Sweep {
   struct Boxes {
     std::uint32_t *triangle = nullptr, *corners = nullptr;  // three places in vertices_ each
     std::size_t count = 0;
+    std::uint32_t* sphere = nullptr;       // of all triangles of a block; kNoPlace where they have several
     float *middle[3] = {}, *half[3] = {};  // a block's box along x, y, z, relative to vertices_.origin
+    std::uint32_t* is_live = nullptr;      // 1: a triangle of the block may meet one of the other side, and count
     // The blocks that may meet the other side in this view.
     std::uint32_t* block = nullptr;  // their numbers, ascending
     std::size_t block_count = 0;
@@ -112,27 +116,44 @@ class Sweep {
   };
   void keep(const Reach& reach);
   void keep_runs(const Side& side, const Side& other, const Reach& reach, Boxes& out);
-  void widen_blocks(const PosedSkin& skin, const TriangleRun& run, Boxes& out) const;
+  void widen_blocks(const PosedSkin& skin, const TriangleRun& run, bool is_live, Boxes& out) const;
+  bool may_count(std::size_t sphere_a, std::size_t sphere_b) const {
+    return counts_all_ || sphere_a == kNoPlace || sphere_b == kNoPlace || rule_.may_count(sphere_a, sphere_b);
+  }
   bool may_block(std::uint32_t a, std::uint32_t b, double depth) const;
-  void block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) const;
-  static std::int32_t find_hidden(float* const (&low)[3], float* const (&high)[3], std::size_t first,
-                                  float* const (&other_low)[3], float* const (&other_high)[3], std::size_t i,
-                                  std::int32_t (&hides)[kBlock]);
-  // Calls visit(a, b, block of b) for triangles whose boxes hide each other and wants(low, high) of their intervals: b
-  // can meet a only after a move between low and high. Starts at that block of b; ends where visit() says false.
-  template <typename Wants, typename Visit>
-  void for_pairs(std::size_t first, const Wants& wants, const Visit& visit);
+  void block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out);
+  // Moves of b along the direction, above `from` and up to `to`.
+  struct Moves {
+    double from, to;
+  };
+  // Calls visit(a, b, block of b) for triangles that may meet after such a move, by their boxes. Starts at that block
+  // of b; ends where visit() says false. visit() may narrow the moves.
+  template <typename Visit>
+  void for_pairs(std::size_t first, const Moves& moves, const Visit& visit);
   void vote(const Side& side, const Double3* points, std::size_t count, bool up, double outwards, int* inside) const;
   void vote_by(const Corners& triangle, const Double3* points, std::size_t count, bool up, double handedness,
                double* nearest, int* inside) const;
   void remember(const WayOut& out);
+  // One side's triangles that were looked at last in this view: each has one place, by its number.
+  struct SeenTriangles {
+    static constexpr std::size_t kCount = 256;
+    struct Entry {
+      std::uint64_t key;  // the view's number and the triangle's
+      SeenTriangle seen;
+    };
+    Entry* entries = nullptr;
+  };
+  const SeenTriangle& see(SeenTriangles& of, const PosedSkin& skin, std::uint32_t triangle);
 
   const Skins& skins_;
   const PairRule& rule_;
   double gap_;
+  bool counts_all_ = false;  // pairs that do not count, too: they limit volumes
   View view_{{0, 0, 1}, {0, 0, 0}};
   Span<const TriangleRun> side_a_, side_b_;
   Boxes a_, b_;
+  SeenTriangles seen_a_, seen_b_;
+  std::uint32_t view_number_ = 0;
   Vertices vertices_;
   // Pairs that ended the ways along earlier directions: they are likely to block the next one.
   static constexpr std::size_t kRemembered = 64;

@@ -24,6 +24,8 @@ void Sweep::Boxes::take(WordMemory& memory, std::size_t capacity) {
     memory.take(middle[axis], blocks);
     memory.take(half[axis], blocks);
   }
+  memory.take(sphere, blocks);
+  memory.take(is_live, blocks);
   memory.take(block, blocks);
   memory.take(has_boxes, blocks);
   memory.take(triangle, capacity);
@@ -48,11 +50,11 @@ void Sweep::Boxes::view_blocks(const View& view) {
   }
 }
 
-// Keeps the blocks that reach into a box, and those that are not finite.
+// Keeps the live blocks that reach into a box, and those that are not finite.
 void Sweep::Boxes::keep_blocks(const float (&least)[3], const float (&most)[3]) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < block_count; ++i) {
-    bool is_outside = false;
+    bool is_outside = is_live[block[i]] == 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       is_outside = is_outside || block_low[axis][i] > most[axis] || block_high[axis][i] < least[axis];
     }
@@ -112,13 +114,17 @@ void Sweep::keep(const Reach& reach) {
 }
 
 // Widens the boxes of the blocks that a run comes to lie in by the box of the run's cluster.
-void Sweep::widen_blocks(const PosedSkin& skin, const TriangleRun& run, Boxes& out) const {
+void Sweep::widen_blocks(const PosedSkin& skin, const TriangleRun& run, bool is_live, Boxes& out) const {
   const double origin[3] = {vertices_.origin.x, vertices_.origin.y, vertices_.origin.z};
+  const std::uint32_t sphere = skin.surface->clusters[run.cluster].sphere;
   for (std::size_t i = out.count / kBlock; kBlock * i < out.count + run.count; ++i) {
+    const bool is_first = kBlock * i >= out.count;
+    out.sphere[i] = is_first || out.sphere[i] == sphere ? sphere : kNoPlace;
+    out.is_live[i] = is_live || (!is_first && out.is_live[i] != 0) ? 1 : 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       auto low = static_cast<float>(double{skin.low[axis][run.cluster]} - origin[axis]);
       auto high = static_cast<float>(double{skin.high[axis][run.cluster]} - origin[axis]);
-      if (kBlock * i < out.count) {
+      if (!is_first) {
         low = std::min(low, out.middle[axis][i] - out.half[axis][i]);
         high = std::max(high, out.middle[axis][i] + out.half[axis][i]);
       }
@@ -155,10 +161,17 @@ void Sweep::keep_runs(const Side& side, const Side& other, const Reach& reach, B
       return is_near([&](std::size_t axis) { return double{other.skin.high[axis][from.cluster]}; },
                      [&](std::size_t axis) { return double{other.skin.low[axis][from.cluster]}; });
     };
-    if (!rule_.leaves_out(run.cluster) &&
-        is_near([&](std::size_t axis) { return highest[axis]; }, [&](std::size_t axis) { return lowest[axis]; }) &&
-        std::any_of(other.runs.begin(), other.runs.end(), is_near_run)) {
-      widen_blocks(side.skin, run, out);
+    if (rule_.leaves_out(run.cluster) ||
+        !is_near([&](std::size_t axis) { return highest[axis]; }, [&](std::size_t axis) { return lowest[axis]; })) {
+      continue;
+    }
+    const std::uint32_t sphere = side.skin.surface->clusters[run.cluster].sphere;
+    const auto is_partner = [&](const TriangleRun& from) {
+      return is_near_run(from) && may_count(sphere, other.skin.surface->clusters[from.cluster].sphere);
+    };
+    const TriangleRun* const near = std::find_if(other.runs.begin(), other.runs.end(), is_near_run);
+    if (near != other.runs.end()) {
+      widen_blocks(side.skin, run, std::any_of(near, other.runs.end(), is_partner), out);
       for (std::uint32_t i = 0; i < run.count; ++i) {
         out.triangle[out.count++] = run.first + i;
       }
@@ -166,9 +179,12 @@ void Sweep::keep_runs(const Side& side, const Side& other, const Reach& reach, B
   }
 }
 
-// Numbers the vertices that the kept triangles use, so that they lie near each other: every view reads them.
+// Numbers the vertices that the triangles of live blocks use, so that they lie near each other: every view reads them.
 void Sweep::list_vertices(const Side& side, Boxes& boxes) {
   for (std::size_t i = 0; i < boxes.count; ++i) {
+    if (boxes.is_live[i / kBlock] == 0) {
+      continue;
+    }
     const std::uint32_t* const corners = side.skin.surface->triangle_vertices.data + 3 * std::size_t{boxes.triangle[i]};
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t vertex = side.first_vertex + corners[k];

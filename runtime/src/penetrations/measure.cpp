@@ -380,6 +380,9 @@ class Measurer {
   Penetration measure(TwoParts parts) {
     const Contour& contour = parts.contour;
     limits_ = was_fault(parts) ? &eased_ : &in_.limits;
+    if (lists_faults_alone() && !may_be_fault(*limits_, measures_of(parts))) {
+      return {};
+    }
     if (parts.containment > 0) {
       part_them(parts);
     }
@@ -402,8 +405,9 @@ class Measurer {
     exit = shortest_exit(sweep_, contour, settings, exit);
     Double3 axes[3];
     axes_of(contour, exit.direction, axes);
-    // A contact that the quick measures alone class as no fault stays no fault: both forms must agree.
-    Penetration out = describe(parts, exit, look(parts, axes), is_likely ? nullptr : &quick);
+    // A contact that the quick measures alone class as no fault stays no fault: both forms must agree. Its extent is
+    // known, and the seen length matters for that alone.
+    Penetration out = describe(parts, exit, look(parts, axes, is_likely), is_likely ? nullptr : &quick);
     if (is_fault(out.kind) && is_kept) {
       set_way(parts, steady_exit(sweep_, contour, settings, exit, previous), out);
     }
@@ -413,15 +417,16 @@ class Measurer {
     return out;
   }
 
-  Seen look(const TwoParts& parts, const Double3 (&axes)[3]) {
-    const Seen seen = memory_.visibility.look(parts.contour, axes, kClearance * height_);
+  Seen look(const TwoParts& parts, const Double3 (&axes)[3], bool wants_length) {
+    const Gaze gaze{kClearance * height_, wants_length};
+    const Seen seen = memory_.visibility.look(parts.contour, axes, gaze);
     // From twice `hidden` on, more changes neither class nor fault depth.
     if (!(seen.share < 2 * double{in_.limits.hidden}) || parts.contour.segments.size == parts.all.size) {
       return seen;
     }
     // In sight below an open coat?
-    const Seen below = memory_.visibility.look(contour_of(memory_.skins, parts.all, rest_height_, memory_.contour),
-                                               axes, kClearance * height_);
+    const Seen below =
+        memory_.visibility.look(contour_of(memory_.skins, parts.all, rest_height_, memory_.contour), axes, gaze);
     return below.share > seen.share ? below : seen;
   }
 
@@ -430,11 +435,31 @@ class Measurer {
     if (!parts.contour.is_closed || (in_.are_one && parts.a == parts.b)) {
       return -1;
     }
-    sweep_.keep_on_way(exit.direction, exit.way.depth);
     const Volume volume = sweep_.volume(exit.direction, exit.way.depth, has_outer_layers_);
     const double area = dot(parts.contour.area, exit.direction);
     const bool is_known = std::abs(volume.area - area) <= kAreaError * volume.total && volume.volume >= 0;
     return is_known ? static_cast<float>(volume.volume) : -1;
+  }
+
+  bool lists_faults_alone() const { return in_.classes >> SC_CLASS_DEEP_FOLD << SC_CLASS_DEEP_FOLD == in_.classes; }
+
+  // The measurements that need no way out.
+  Measures measures_of(const TwoParts& parts) const {
+    const Contour& contour = parts.contour;
+    Measures out{};
+    out.volume = out.thickness = out.extent = -1;
+    out.contour_length = static_cast<float>(contour.length);
+    out.visible = 1;
+    out.touching = static_cast<float>(contour.touching);
+    out.facing = static_cast<float>(contour.facing);
+    out.rest_distance = static_cast<float>(contour.rest_distance / rest_height_);
+    out.height = static_cast<float>(height_);
+    out.metre = static_cast<float>(metre_);
+    out.relation = relation_of(parts.a, parts.b);
+    out.is_one_piece = contour.is_one_piece ? 1 : 0;
+    out.swallowed = static_cast<float>(parts.swallowed);
+    out.through = parts.passes_through ? 1 : 0;
+    return out;
   }
 
   // `known`: has the same parts' thickness, and how much is swallowed; or null.
@@ -444,21 +469,9 @@ class Measurer {
     set_way(parts, exit, out);
     // The nearer a part is to being inside, the less it is out once just its contact is gone.
     const double more = std::max(parts.apart - exit.way.depth, 0.0);
-    out.measures = {least_depth(exit.way.depth + parts.containment * more),
-                    -1,
-                    static_cast<float>(contour.length),
-                    static_cast<float>(seen.share),
-                    static_cast<float>(contour.touching),
-                    static_cast<float>(contour.facing),
-                    static_cast<float>(contour.rest_distance / rest_height_),
-                    -1,
-                    -1,
-                    static_cast<float>(height_),
-                    static_cast<float>(metre_),
-                    relation_of(parts.a, parts.b),
-                    contour.is_one_piece ? 1 : 0,
-                    static_cast<float>(parts.swallowed),
-                    parts.passes_through ? 1 : 0};
+    out.measures = measures_of(parts);
+    out.measures.depth = least_depth(exit.way.depth + parts.containment * more);
+    out.measures.visible = static_cast<float>(seen.share);
     if (known != nullptr) {
       out.measures.thickness = known->measures.thickness;
       out.measures.extent = known->measures.extent;

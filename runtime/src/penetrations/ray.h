@@ -36,10 +36,14 @@ class Ray {
     if (!(determinant > 0) && !(determinant < 0)) {
       return HUGE_VAL;
     }
-    const Double3 r = from_ - t.p[0], q = cross(r, e);
-    const double s = dot(r, p) / determinant, u = dot(direction_, q) / determinant;
-    const double reach = dot(f, q) / determinant;
-    return s >= 0 && u >= 0 && s + u <= 1 && reach > 0 ? reach : HUGE_VAL;
+    const Double3 r = from_ - t.p[0];
+    const double s = dot(r, p) / determinant;
+    if (!(s >= 0 && s <= 1)) {
+      return HUGE_VAL;  // most triangles
+    }
+    const Double3 q = cross(r, e);
+    const double u = dot(direction_, q) / determinant, reach = dot(f, q) / determinant;
+    return u >= 0 && s + u <= 1 && reach > 0 ? reach : HUGE_VAL;
   }
 
  private:

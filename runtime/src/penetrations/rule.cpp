@@ -2,6 +2,7 @@
 #include "runtime/src/penetrations/rule.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <iterator>
 
@@ -27,9 +28,9 @@ constexpr Rule kDefault = [] {
   return out;
 }();
 
-constexpr double kAnyDepth = 1e30;  // finite: a share of 0 leaves nothing of it
-constexpr double kMargin = 0.65;    // of the depth at which a thin intersection is none any more
-constexpr float kEase = 0.7F;       // of what is allowed
+constexpr double kAnyDepth = 1e300;  // above any measured depth; finite: a share of 0 leaves nothing of it
+constexpr double kMargin = 0.65;     // of the depth at which a thin intersection is none any more
+constexpr float kEase = 0.7F;        // of what is allowed
 
 // How close two spots are at rest: 1 up to half of the limit, a half at it, 0 from one and a half times it on.
 double closeness(float distance, float limit) {
@@ -162,6 +163,13 @@ bool depends_on_extent(const Rule& rule, const Measures& of) {
   all.extent = HUGE_VALF;
   none.extent = 0;
   return classify(rule, all) != classify(rule, none) || fault_depth_of(rule, all) != fault_depth_of(rule, none);
+}
+
+bool may_be_fault(const Rule& rule, Measures of) {
+  of.depth = FLT_MAX;
+  of.extent = HUGE_VALF;
+  of.visible = 1;
+  return is_fault(classify(rule, of));
 }
 
 Rule eased(Rule rule) {

@@ -23,5 +23,7 @@ double containment_of(const Rule& rule, double swallowed);
 Rule eased(Rule rule);
 // Does class or fault depth depend on `extent`, which is the dearest to measure?
 bool depends_on_extent(const Rule& rule, const Measures& of);
+// Could these two parts be a fault at some depth, and in full view? Reads what is known before a depth is measured.
+bool may_be_fault(const Rule& rule, Measures of);
 
 }  // namespace spherechain
