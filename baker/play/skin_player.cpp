@@ -111,7 +111,7 @@ const std::vector<Penetration>& SkinPlayer::measure_quickly(const PartPairBits* 
 }
 
 const std::vector<Penetration>& SkinPlayer::measure_as_games() {
-  Query asked = query(SC_DETAIL_FULL);
+  Query asked = query(true);
   asked.scope = SC_SCOPE_APART;
   return find(nullptr, asked);
 }

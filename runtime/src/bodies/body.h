@@ -50,7 +50,7 @@ inline const AssetView& asset_of(const sc_body& body) { return view_of(body.mode
 // As sc_set_pose(). `in_asset_order`: the bones are in the asset's order already.
 Status take_pose(sc_body& body, const sc_pose& pose, const sc_transform* place, bool in_asset_order);
 
-// As sc_find_penetrations() in SC_DETAIL_QUICK, but a fault of the query's `previous` is measured along its direction
+// As sc_find_penetrations() without `full`, but a fault of the query's `previous` is measured along its direction
 // alone, where that is no detour.
 Status find_along(sc_body& body, const sc_body* other, const sc_query& query, sc_penetrations& found);
 

@@ -17,7 +17,8 @@ struct MeasureJob {
   // 1: along one direction, without volume and visibility, but for likely faults: these are measured in full, so that
   // both forms find the same faults.
   std::int32_t quick = 0;
-  // 1, with `quick`: a likely fault with a direction in `previous` is measured along it, where that is no detour.
+  // 1, with `quick`: a likely fault with a direction in `previous` is measured along it, where that is no detour. Where
+  // no depth is a fault, nothing is measured, and the class is SC_CLASS_REST.
   std::int32_t along = 0;
   const Rule* rule = nullptr;  // null: sc_default_rule()
   // The part that holds each probe, as find_inside() says it, for the body or for both; null: not known.

@@ -19,7 +19,7 @@ constexpr double kGapMost = 0.008, kSlideMost = 0.05;  // of a row that is kept
 constexpr float kUnseenMost = 0.5F;                    // seconds
 constexpr double kLoosen = 0.15;                       // heights a second, by which a row that is not found gives way
 constexpr double kForget = 0.1;                        // seconds, in which a larger depth is allowed again
-constexpr double kAnyDepth = 10;                       // what is allowed where nothing is a fault
+constexpr double kAnyDepth = 10;                       // where pieces slide in each other as they like
 
 constexpr Affine kWorld{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
@@ -90,13 +90,6 @@ bool keep(const Spaces& spaces, Row& row) {
   return true;
 }
 
-// How deep the two may be. Layers, and what touches at rest, may be as deep as they are.
-double allowed_of(const sc_response& response, const Penetration& found) {
-  return found.kind == SC_CLASS_REST || found.kind == SC_CLASS_SHELL
-             ? kAnyDepth * response.height
-             : std::min(stays_allowed(response.rule, found.measures), kAnyDepth * response.height);
-}
-
 Row* find_patch(sc_response& response, const Row& like) {
   for (std::size_t i = 0; i < response.row_count; ++i) {
     Row& row = response.rows[i];
@@ -116,7 +109,8 @@ void take(sc_response& response, const sc_response_frame& frame, const Penetrati
   row.kept.body = static_cast<std::uint16_t>(body);
   row.normal = to_double(found.direction);
   row.at = to_double(found.deepest.position);
-  double depth = double{found.distance}, allowed = allowed_of(response, found);
+  double depth = double{found.distance},
+         allowed = std::min(stays_allowed(response.rule, found.measures), kAnyDepth * response.height);
   Row* place = find_patch(response, row);
   if (place != nullptr) {
     Double3 mean = place->normal + row.normal;
@@ -214,7 +208,7 @@ Status find_rows(sc_response& response, const sc_response_frame& frame, double s
   response.fault_depth = 0;
   sc_query query{};
   query.rule = &response.rule;
-  query.classes = (1U << (SC_CLASS_INSIDE + 1)) - 1;
+  query.classes = ((1U << (SC_CLASS_INSIDE + 1)) - 1) & ~(1U << SC_CLASS_REST);
   query.target = frame.target;
   query.previous = response.previous;
   const std::size_t bodies = 1 + frame.other_count + (frame.ground != nullptr ? 1 : 0);
