@@ -164,6 +164,37 @@ TEST_CASE("little that goes in touches up to ten times the depth, unless a depth
   CHECK(touch_depth_of(rule, 1, 0.0175) == doctest::Approx(0.0066 * 0.0175));
 }
 
+TEST_CASE("two parts may be a fault exactly where some depth makes them one") {
+  std::size_t never = 0, count = 0;
+  for (const Relation relation : {SC_RELATION_APART, SC_RELATION_NEAR, SC_RELATION_JOINED, SC_RELATION_TWO_BODIES}) {
+    for (const int pieces : {0, 1}) {
+      for (const float touching : {0.0F, 0.5F, 1.0F}) {
+        for (const float swallowed : {0.0F, 0.5F, 0.7F}) {
+          Measures of = hand_in_thigh();
+          of.relation = relation;
+          of.is_one_piece = pieces;
+          of.touching = touching;
+          of.swallowed = swallowed;
+          const bool may_be = may_be_fault(sc_default_rule(), of);
+          bool is_some = false;
+          for (const float depth : {0.001F, 0.05F, 1.0F, 1e6F, 1e35F}) {
+            for (const float extent : {0.0F, 0.2F, 1e6F}) {
+              of.depth = depth;
+              of.extent = extent;
+              is_some = is_some || is_fault(classify(of));
+            }
+          }
+          CHECK(is_some == may_be);
+          never += may_be ? 0 : 1;
+          ++count;
+        }
+      }
+    }
+  }
+  CHECK(never > 0);
+  CHECK(never < count);
+}
+
 TEST_CASE("a rule of another version, or with a limit that is no number, is refused") {
   Rule rule = sc_default_rule();
   CHECK(check_rule(&rule) == SC_OK);
