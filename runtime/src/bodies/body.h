@@ -51,7 +51,8 @@ inline const AssetView& asset_of(const sc_body& body) { return view_of(body.mode
 Status take_pose(sc_body& body, const sc_pose& pose, const sc_transform* place, bool in_asset_order);
 
 // As sc_find_penetrations() without `full`, but a fault of the query's `previous` is measured along its direction
-// alone, where that is no detour.
+// alone, where that is no detour. `ignored_parts` may be given without `other`: these are then not looked at for being
+// inside another part.
 Status find_along(sc_body& body, const sc_body* other, const sc_query& query, sc_penetrations& found);
 
 // The body as jobs take it.

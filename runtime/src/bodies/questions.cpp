@@ -368,7 +368,9 @@ Status measure_bodies(sc_body& body, const sc_body* other, const sc_query& query
 
 Status find_along(sc_body& body, const sc_body* other, const sc_query& query, sc_penetrations& found) {
   Status status = begin(&body, other, &found);
-  status = status == SC_OK ? check_query(&query, other) : status;
+  sc_query checked = query;
+  checked.ignored_parts = other == nullptr ? nullptr : query.ignored_parts;
+  status = status == SC_OK ? check_query(&checked, other) : status;
   return status == SC_OK ? measure_bodies(body, other, query, true, found) : status;
 }
 

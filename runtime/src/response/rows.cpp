@@ -211,11 +211,11 @@ Status find_rows(sc_response& response, const sc_response_frame& frame, double s
   query.classes = ((1U << (SC_CLASS_INSIDE + 1)) - 1) & ~(1U << SC_CLASS_REST);
   query.target = frame.target;
   query.previous = response.previous;
+  query.ignored_parts = response.resting_parts.data;
   const std::size_t bodies = 1 + frame.other_count + (frame.ground != nullptr ? 1 : 0);
   for (std::size_t body = 0; body < bodies; ++body) {
     sc_penetrations found{};
     query.part_pairs = body == 0 ? response.part_pairs.data : nullptr;
-    query.ignored_parts = body == 0 ? nullptr : response.resting_parts.data;
     query.previous_count = list_previous(response, body);
     const Status status = body <= frame.other_count
                               ? find_along(*response.body, body == 0 ? nullptr : frame.others[body - 1], query, found)
