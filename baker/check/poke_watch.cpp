@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/import/glb_file.h"
+#include "baker/import/notes.h"
 #include "baker/mesh/error.h"
 #include "baker/os/child_process.h"
 
@@ -60,8 +61,10 @@ PokeWatch::PokeWatch(const AnimatedAsset& animated, const std::filesystem::path&
     layers_ = std::make_unique<Layers>(character, glb_of_bytes(read_as_glb(source), source.string()).json);
   } catch (const Interrupted&) {
     throw;
-  } catch (const Error&) {
-    return;  // nobody knows its materials: what covers and what is glass
+  } catch (const Error& error) {
+    // Nobody knows its materials: what covers and what is glass.
+    add_note(source.string() + ": is not looked at for skin that shows through clothes (" + error.what() + ")");
+    return;
   }
   if (!layers_->finder.has_work()) layers_.reset();
   parts_ = body_parts_of(animated.asset());

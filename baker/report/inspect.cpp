@@ -17,11 +17,20 @@ const char* side_name(std::uint8_t side) {
   return side == SC_SIDE_LEFT ? "left" : side == SC_SIDE_RIGHT ? "right" : "none";
 }
 
-std::size_t count_ignored(const OpenAsset& asset) {
+std::size_t bits_in(Span<const std::uint64_t> words) {
   std::size_t count = 0;
-  for (const std::uint64_t word : asset->ignored()) count += static_cast<std::size_t>(std::popcount(word));
+  for (const std::uint64_t word : words) count += static_cast<std::size_t>(std::popcount(word));
   return count;
 }
+
+// Pairs of clusters that are layers of one place; the surface has each both ways.
+std::size_t count_layers(const Surface& surface) {
+  return bits_in({surface.layer_bits.data, surface.first_of_layers[surface.clusters.size]}) / 2;
+}
+
+std::size_t count_buried(const Surface& surface) { return bits_in({surface.buried.data, surface.buried.size}); }
+
+std::size_t count_ignored(const OpenAsset& asset) { return bits_in(asset->ignored()); }
 
 std::size_t count_chain_entries(const OpenAsset& asset) {
   std::size_t count = 0;
@@ -172,6 +181,8 @@ std::string inspect_json(const OpenAsset& asset) {
        {{"clusters", asset.surface().clusters.size},
         {"vertices", asset.surface().source_vertices.size},
         {"rest_contacts", asset.surface().rest_contacts.size},
+        {"buried_clusters", count_buried(asset.surface())},
+        {"layer_pairs", count_layers(asset.surface())},
         {"bytes", bytes_of(asset->skin())}}},
       {"fit",
        {{"phi1", to_json(fit.phi1)}, {"phi1_adjusted", to_json(fit.phi1_adjusted)}, {"phi2", to_json(fit.phi2)}}}};
@@ -197,6 +208,8 @@ std::string inspect_text(const OpenAsset& asset) {
   const Surface& surface = asset.surface();
   out += fmt::format("skin     {} clusters, {} vertices, {} contacts at rest, {} bytes\n", surface.clusters.size,
                      surface.source_vertices.size, surface.rest_contacts.size, bytes_of(asset->skin()));
+  out += fmt::format("layers   {} clusters buried, {} pairs of clusters lie over each other\n", count_buried(surface),
+                     count_layers(surface));
   out += fmt::format("\n{:<14} {:>9} {:>7}\n", "region", "triangles", "spheres");
   for (std::size_t r = 0; r < asset->region_count(); ++r) {
     out += fmt::format("{:<14} {:>9} {:>7}\n", asset->region(r).name, asset->region(r).triangle_count,

@@ -19,7 +19,7 @@ LEFT_OUT = {
     "SC_WHOLE_SOURCE": "its width depends on the machine: pass new UIntPtr(UIntPtr.Size == 8 ? ulong.MaxValue : uint.MaxValue)",
 }
 RENAMED = {"sc_transform": "JointTransform"}  # Transform is UnityEngine's
-OPAQUE = {"sc_body", "sc_model"}  # handles: IntPtr
+OPAQUE = {"sc_body", "sc_model", "sc_response"}  # handles: IntPtr
 NUMBERS = {"void": "void", "char": "byte", "int": "int", "float": "float", "int32_t": "int", "uint32_t": "uint",
            "uint64_t": "ulong", "size_t": "UIntPtr"}
 KEYWORDS = {"in", "out", "ref", "params", "object", "string", "lock", "fixed", "base", "this", "is", "as", "event", "checked"}

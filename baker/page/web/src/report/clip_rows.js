@@ -8,12 +8,14 @@ import { isAccepted, isFault, kindText, percent, rankOf } from './marks.js';
 export function digest(row, index) {
   const events = (row.events ?? []).filter((event) => event.state !== 'resolved');
   const open = events.filter((event) => isFault(event) && !event.rule);
+  const pokes = events.filter((event) => event.class === 'poke').sort((a, b) => b.area_cm2 - a.area_cm2);
   const worst = [...open].sort((a, b) => rankOf(b) - rankOf(a) || b.depth_mm - a.depth_mm)[0];
   return {
     ...row,
     index,
     open,
     worst,
+    pokes,
     resolved: (row.events ?? []).length - events.length,
     faults: open.length,
     fresh: open.filter((event) => event.state === 'new' && !isAccepted(row, event)).length,
@@ -35,6 +37,7 @@ export const COLUMNS = [
   { name: '%', of: (row) => (row.error ? Infinity : row.percent), class: 'number', title: 'Of the worst fault, in percent of the height' },
   { name: 'Faults', of: (row) => row.faults, class: 'number', title: 'Parts inside others, penetrations and deep folds that no rule excuses' },
   { name: 'New', of: (row) => row.fresh, class: 'number', title: 'Neither in the baseline nor accepted here' },
+  { name: 'Poke-through', of: (row) => row.pokes.length, class: 'number', title: 'Spots where skin shows through clothes, a warning; the link leads to the largest' },
   { name: 'Fit', of: (row) => row.fit ?? '', title: 'How well the spheres fit the character' },
 ];
 
@@ -97,6 +100,7 @@ export function elements(row) {
       number(row.worst ? percent(row.percent) : ''),
       number(row.faults || ''),
       h('td', { class: `number${row.fresh > 0 ? ' warning' : ''}` }, row.fresh || (row.faults > 0 ? '0' : '')),
+      h('td', { class: 'number' }, row.pokes.length > 0 && h('a', { href: clipLink(row, row.events.indexOf(row.pokes[0])) }, `${row.pokes.length}, ${row.pokes[0].area_cm2} cm²`)),
       h('td', { class: `fit ${row.fit}` }, row.fit),
     ),
   ];

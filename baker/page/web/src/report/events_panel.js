@@ -12,10 +12,12 @@ const timecode = (frame, fps) => {
   return `${two(Math.floor(seconds / 60))}:${two(seconds % 60)}:${two(Math.floor(frame - seconds * fps))}`;
 };
 
-// Skin in one colour, the piece that it shows through in another, and what shows as a contact: linear, of 255.
+// Skin in one colour, the piece that it shows through in another, and what shows in a third: linear, of 255, and as the
+// legend has them.
 const SKIN = [225, 130, 75, 170];
 const CLOTH = [35, 90, 200, 170];
-const SHOWS = [190, 8, 20, 255];
+const SHOWS = [222, 198, 14, 255];
+const LEGEND = [['#f0e442', 'what shows'], ['#f1bd93', 'the skin'], ['#67a0e5', 'what it shows through']];
 
 function paintPoke(skinLayer, { pieces, triangles }) {
   const shows = new Set(decode(triangles, Uint32Array));
@@ -93,6 +95,8 @@ export function fillEvents(panel, { rows, row, fit, model, pokes, store, flyToCo
         h('span', { class: 'when' }, `${frames}${event.from === event.to ? '' : `, worst at ${event.deepest}`} (${timecode(event.deepest, row.fps)})`),
         h('span', { class: `when ${event.fails && !isAccepted(row, event) ? 'warning' : ''}` }, `${classText(event)}${event.class === 'poke' ? '' : `, ${state(event)}`}${event.volume_ml === undefined ? '' : `, ${event.volume_ml} ml`}`),
       ),
+      index === chosen && event.class === 'poke' &&
+        h('div', { class: 'poke-legend' }, ...LEGEND.map(([colour, what]) => h('span', { class: 'legend' }, h('span', { class: 'swatch', style: `background: ${colour}` }), what))),
       index === chosen && isFault(event) && !event.rule && event.state !== 'accepted' &&
         h('button', { type: 'button', class: 'accept', onclick: () => { toggleAccepted(row, event); draw(); } }, isAccepted(row, event) ? 'Accepted: take back (A)' : 'Accept (A)'),
     );

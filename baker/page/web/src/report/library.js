@@ -25,6 +25,8 @@ function summaryText({ characters, clips, frames, errors, tickets }, rows) {
   const parts = [plural(characters, 'character'), plural(clips, 'clip'), plural(frames, 'frame'), `${plural(sum('faults'), 'fault')} in ${plural(tickets.length, 'ticket')}`, `${sum('fresh')} new`];
   if (sum('accepted') > 0) parts.push(`${sum('accepted')} accepted`);
   if (sum('resolved') > 0) parts.push(`${sum('resolved')} resolved`);
+  const pokes = rows.reduce((total, row) => total + row.pokes.length, 0);
+  if (pokes > 0) parts.push(`${plural(pokes, 'spot')} of poke-through, by clips`);
   if (errors > 0) parts.push(`${errors} not checked`);
   return parts.join(' · ');
 }
