@@ -113,7 +113,7 @@ class Header:
                 fields.append((callback.group(1), "IntPtr", 0, len(body)))
                 body = body[callback.end():]
                 continue
-            found = re.match(r"((?:const )?\w+ ?\**) ?([\w\[\], ]+?) ?;", body) or fail("%s: what is %s?" % (name, body[:80]))
+            found = re.match(r"((?:const )?\w+ ?\**(?: const\*)?) ?([\w\[\], ]+?) ?;", body) or fail("%s: what is %s?" % (name, body[:80]))
             for field in found.group(2).split(","):
                 array = re.fullmatch(r"(\w+)(?:\[(\d+)\])?", field.strip()) or fail("%s: what is %s?" % (name, field))
                 fields.append((array.group(1), self.type(found.group(1)), int(array.group(2) or 0), len(body)))
