@@ -15,7 +15,7 @@
 namespace spherechain {
 namespace {
 
-constexpr double kRelease = 0.05;  // seconds, in which a turn that nothing asks for shrinks to 1 / e
+constexpr double kRelease = 0.03;  // seconds, in which a turn that nothing asks for shrinks to 1 / e
 constexpr double kFastest = 8;     // radians a second
 constexpr double kNothing = 1e-4;  // a smaller turn ends
 constexpr double kLacks = 0.0006;  // a share of the height: what rows may lack without another round

@@ -11,14 +11,14 @@ namespace spherechain {
 namespace {
 
 // Lengths are shares of the character's height.
-constexpr double kEase = 0.0025;                       // around what is allowed, the correction sets in gradually
+constexpr double kEase = 0.0015;                       // around what is allowed, the correction sets in gradually
 constexpr double kSlop = 0.0006;                       // so much shallower than what is allowed
 constexpr double kPatch = 0.024;                       // spots that are farther apart are two patches
 constexpr double kBend = 0.035;                        // a skin's radius: it bends away from a row's plane
 constexpr double kGapMost = 0.008, kSlideMost = 0.05;  // of a row that is kept
 constexpr float kUnseenMost = 0.5F;                    // seconds
 constexpr double kLoosen = 0.15;                       // heights a second, by which a row that is not found gives way
-constexpr double kForget = 0.1;                        // seconds, in which a larger depth is allowed again
+constexpr double kForget = 0.07;                        // seconds, in which a larger depth is allowed again
 constexpr double kAnyDepth = 10;                       // where pieces slide in each other as they like
 
 constexpr Affine kWorld{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
