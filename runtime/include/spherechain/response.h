@@ -83,7 +83,7 @@ SPHERECHAIN_API void sc_destroy_response(sc_response* response) SC_NOEXCEPT; /* 
 /* One frame. Sure: where nothing is near and the state is empty, all stays as it is, bit for bit; no joint turns beyond
  * its budget, or away from its animation by more than 8 radians a second; an elbow that is bent does not bend backward;
  * the faults that it finds are not deeper in sum than the animation's (without `ahead`). Not sure: that no fault is
- * left. Those of trunk and legs stay, and tight places have no way out.
+ * left. Faults of trunk and legs stay, and tight places have no way out.
  *
  * SC_OK; SC_NULL, SC_BAD_VALUE (with SC_FIELD_TRANSFORM: a transform is not finite), or a status of the questions: then
  * joints and state are as they were. */
