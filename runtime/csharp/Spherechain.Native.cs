@@ -382,6 +382,21 @@ namespace Spherechain
         public Pair Pair;
     }
 
+    public struct ContactRow  // sc_contact_row
+    {
+        public uint Part, Other;
+        /// <summary>0: the character's own; k: other is a part of others[k - 1], or SC_FLOOR</summary>
+        public uint Body;
+        /// <summary>on the skin of each, in the world</summary>
+        public Vec3 At, AtOther;
+        /// <summary>from `other` to `part`, of unit length</summary>
+        public Vec3 Normal;
+        /// <summary>their distance along `normal`; negative: so deep. The pose's units, as `allowed` is</summary>
+        public float Gap;
+        /// <summary>how deep they may be before it is a fault</summary>
+        public float Allowed;
+    }
+
     public static unsafe class Native
     {
 #if (UNITY_IOS || UNITY_WEBGL) && !UNITY_EDITOR
@@ -397,6 +412,7 @@ namespace Spherechain
         public const uint NoJoint = 0xFFFFFFFFu;
         public const uint NoPart = 0xFFFFFFFFu;
         public const uint NoTriangle = 0xFFFFFFFFu;
+        public const uint ResponseWords = 480;
         public const uint RuleVersion = 4;
         public const uint SideLeft = 1;
         public const uint SideRight = 2;
@@ -631,6 +647,54 @@ namespace Spherechain
             public UIntPtr PairCount;
         }
 
+        public unsafe struct ResponseDef  // sc_response_def
+        {
+            /// <summary>of each joint, before or after it; SC_NO_JOINT: none. Required</summary>
+            public uint* Parents;
+            public UIntPtr JointCount;
+            public float* Mobility;
+            /// <summary>the most that each joint is turned, in radians, up to 2; null: 1.05, 60 degrees</summary>
+            public float* Budget;
+            public ulong* PartPairs;
+            /// <summary>null: sc_default_rule()</summary>
+            public Rule* Rule;
+            /// <summary>copied; null: the body's</summary>
+            public Allocator* Allocator;
+        }
+
+        public unsafe struct ResponseFrame  // sc_response_frame
+        {
+            public JointTransform* Joints;
+            /// <summary>of the roots in the world; null: the identity</summary>
+            public JointTransform* Place;
+            /// <summary>as of sc_pose</summary>
+            public float* MorphWeights;
+            public UIntPtr MorphWeightCount;
+            /// <summary>since the last frame, up to 1</summary>
+            public float Seconds;
+            /// <summary>from 0, the full response, to 1, none: to fade it</summary>
+            public float Weakness;
+            public uint Rounds;
+            public JointTransform* Ahead;
+            public uint AheadFrames;
+            /// <summary>other characters and props to stay out of, at most 8, always in this order</summary>
+            public IntPtr* Others;
+            public UIntPtr OtherCount;
+            /// <summary>null: none</summary>
+            public Ground* Ground;
+            /// <summary>the same answers on every one</summary>
+            public Target Target;
+            /// <summary>how many joints were turned; 0: `joints` is as it was, bit for bit</summary>
+            public uint Turned;
+            /// <summary>how many were not turned as far as wanted</summary>
+            public uint AtBudget;
+            /// <summary>the sum of sc_penetration.fault_depth that is left, as far as it is known</summary>
+            public float Remaining;
+            /// <summary>in the corrected pose; valid until the next call</summary>
+            public ContactRow* Rows;
+            public UIntPtr RowCount;
+        }
+
         [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_code_text(Code code);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_field_name(Field field);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_target_name(Target target);
@@ -673,5 +737,8 @@ namespace Spherechain
         [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_crowd_scratch_words(Asset* asset, UIntPtr task_count);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_meetings(SceneJob* job);
         [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_scene_scratch_words(UIntPtr body_count);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_create_response(IntPtr body, ResponseDef* def, IntPtr* response);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern void sc_destroy_response(IntPtr response);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_respond(IntPtr response, ulong* state, ResponseFrame* frame);
     }
 }

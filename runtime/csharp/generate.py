@@ -19,7 +19,7 @@ LEFT_OUT = {
     "SC_WHOLE_SOURCE": "its width depends on the machine: pass new UIntPtr(UIntPtr.Size == 8 ? ulong.MaxValue : uint.MaxValue)",
 }
 RENAMED = {"sc_transform": "JointTransform"}  # Transform is UnityEngine's
-OPAQUE = {"sc_body", "sc_model"}  # handles: IntPtr
+OPAQUE = {"sc_body", "sc_model", "sc_response"}  # handles: IntPtr
 NUMBERS = {"void": "void", "char": "byte", "int": "int", "float": "float", "int32_t": "int", "uint32_t": "uint",
            "uint64_t": "ulong", "size_t": "UIntPtr"}
 KEYWORDS = {"in", "out", "ref", "params", "object", "string", "lock", "fixed", "base", "this", "is", "as", "event", "checked"}
@@ -113,7 +113,7 @@ class Header:
                 fields.append((callback.group(1), "IntPtr", 0, len(body)))
                 body = body[callback.end():]
                 continue
-            found = re.match(r"((?:const )?\w+ ?\**) ?([\w\[\], ]+?) ?;", body) or fail("%s: what is %s?" % (name, body[:80]))
+            found = re.match(r"((?:const )?\w+ ?\**(?: const\*)?) ?([\w\[\], ]+?) ?;", body) or fail("%s: what is %s?" % (name, body[:80]))
             for field in found.group(2).split(","):
                 array = re.fullmatch(r"(\w+)(?:\[(\d+)\])?", field.strip()) or fail("%s: what is %s?" % (name, field))
                 fields.append((array.group(1), self.type(found.group(1)), int(array.group(2) or 0), len(body)))
