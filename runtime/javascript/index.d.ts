@@ -36,8 +36,8 @@ export interface Spherechain {
    * joints or for none) where you have them: another rest pose, unit or axis convention is then refused. Without `joints`, palettes
    * come in the order of `Model.bones`. */
   createModel(bytes: Uint8Array | ArrayBuffer, joints?: readonly Joint[]): Model;
-  /** What a response remembers of one character's frames before: nothing at first. `fill(0)` forgets it, where the animation cuts or the
-   * character is moved elsewhere. A copy (`slice()`) replays the same, bit for bit, on every machine. */
+  /** A state holds what a response remembers of one character's frames before: nothing at first. `fill(0)` forgets it, where the
+   * animation cuts or the character is moved elsewhere. A copy (`slice()`) replays the same, bit for bit, on every machine. */
   createResponseState(): Uint32Array;
   /** The class of measurements: those that were found quickly by the rule that they were found with, full ones by any. */
   classify(measures: Measures, rule?: Partial<Rule>): PenetrationClass;
@@ -179,7 +179,7 @@ export interface Response {
 export interface ResponseOptions {
   /** Since the last frame, up to 1. */
   seconds: number;
-  /** Of the roots in the world. */
+  /** The place of the roots in the world. */
   place?: { translation?: ArrayLike<number>; rotation?: ArrayLike<number>; scale?: ArrayLike<number> };
   morphWeights?: Float32Array;
   /** From 0, the full response, to 1, none: to fade it. */

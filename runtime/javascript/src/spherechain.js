@@ -17,7 +17,7 @@ let status, query, subject, pose, out, responseFrame, sentence;  // where calls 
 const SENTENCE_BYTES = 256;
 const ABI_VERSION = 16, IGNORED_PAIRS = 30;  // SC_ABI_VERSION, and where sc_asset_info.ignored_pairs is: module.cpp asserts both
 const STATE_WORDS = 960, JOINT_FLOATS = 10, OTHERS_MAX = 8;  // twice SC_RESPONSE_WORDS; an sc_transform
-const handles = new WeakMap();  // where models, bodies and ignored pairs are in memory, until they are disposed of
+const handles = new WeakMap();  // where models, bodies, responses and ignored pairs are in memory, until they are disposed of
 
 export function load() {
   return (loading ??= instantiate());
