@@ -14,7 +14,8 @@ elseif(NOT SPHERECHAIN_MONO)
 endif()
 
 set(SPHERECHAIN_CSHARP_SOURCES ${PROJECT_SOURCE_DIR}/runtime/csharp/Spherechain.Native.cs
-  ${PROJECT_SOURCE_DIR}/runtime/csharp/Spherechain.cs ${PROJECT_SOURCE_DIR}/runtime/csharp/Spherechain.Body.cs)
+  ${PROJECT_SOURCE_DIR}/runtime/csharp/Spherechain.cs ${PROJECT_SOURCE_DIR}/runtime/csharp/Spherechain.Body.cs
+  ${PROJECT_SOURCE_DIR}/runtime/csharp/Spherechain.Response.cs)
 
 # A program of C# sources, into <build>/csharp.
 function(spherechain_csharp_program name)

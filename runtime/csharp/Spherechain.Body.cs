@@ -373,7 +373,7 @@ namespace Spherechain
             }
         }
 
-        static void CheckBits(ulong[] words, int bits, Field field, string remedy)
+        internal static void CheckBits(ulong[] words, int bits, Field field, string remedy)
         {
             if (words != null && words.Length < (bits + 63) / 64) throw new SpherechainException(Code.TooSmall, field, remedy);
         }
@@ -392,7 +392,7 @@ namespace Spherechain
             return new SpherechainException(Code.Aliased, Field.Bodies, "the body is in use: make one a thread");
         }
 
-        void Enter(bool changesPose)
+        internal void Enter(bool changesPose)
         {
             if (Interlocked.CompareExchange(ref busy, 1, 0) != 0) throw InUse();
             try
@@ -407,14 +407,14 @@ namespace Spherechain
             }
         }
 
-        void Leave(bool changesPose)
+        internal void Leave(bool changesPose)
         {
             if (changesPose) Volatile.Write(ref readers, 0);
             Volatile.Write(ref busy, 0);
             GC.KeepAlive(this);
         }
 
-        void BeginRead()
+        internal void BeginRead()
         {
             for (int now = 0, last = -1; now != last;)
             {
@@ -430,7 +430,7 @@ namespace Spherechain
             }
         }
 
-        void EndRead()
+        internal void EndRead()
         {
             Interlocked.Decrement(ref readers);
             GC.KeepAlive(this);

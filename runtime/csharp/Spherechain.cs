@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Spherechain for C#: a Model, what is wrong with what it was given, and the mirror between right- and left-handed axes. A Body
-// is in Spherechain.Body.cs. For netstandard 2.0, Unity 2021 and mono; C# 7. Objects allocate when they are made, never in a
-// frame. Every error is a SpherechainException. docs/csharp.md is the guide.
+// is in Spherechain.Body.cs, a Response in Spherechain.Response.cs. For netstandard 2.0, Unity 2021 and mono; C# 7. Objects
+// allocate when they are made, never in a frame. Every error is a SpherechainException. docs/csharp.md is the guide.
 using System;
 using System.IO;
 using System.Text;

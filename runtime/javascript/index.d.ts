@@ -36,6 +36,9 @@ export interface Spherechain {
    * joints or for none) where you have them: another rest pose, unit or axis convention is then refused. Without `joints`, palettes
    * come in the order of `Model.bones`. */
   createModel(bytes: Uint8Array | ArrayBuffer, joints?: readonly Joint[]): Model;
+  /** A state holds what a response remembers of one character's frames before: nothing at first. `fill(0)` forgets it, where the
+   * animation cuts or the character is moved elsewhere. A copy (`slice()`) replays the same, bit for bit, on every machine. */
+  createResponseState(): Uint32Array;
   /** The class of measurements: those that were found quickly by the rule that they were found with, full ones by any. */
   classify(measures: Measures, rule?: Partial<Rule>): PenetrationClass;
 }
@@ -150,8 +153,76 @@ export interface Body {
   /** Where the skin is: a view, x, y, z each. The asset merges the source's duplicates at seams: `length / 3` vertices, in an order of their
    * own, of which Model.triangles are. The first call allocates. */
   vertices(): Float32Array;
-  /** Frees the memory. Every later call throws. */
+  /** Collision response: joint rotations in, corrected ones out. It sets the pose of this body, and serves any number of characters of the
+   * model in turn. `parents`: of each of your joints, before or after it; -1: none. `mobility`: how easily each joint turns, from 0, never,
+   * to 1; arms and hands if left out; at most 16 may turn. `budget`: the most that each is turned, in radians, up to 2; 1.05, 60 degrees, if
+   * left out. `partPairs`: the pairs of body parts that are kept apart; those that a turn can move against each other if left out. */
+  createResponse(options: {
+    parents: ArrayLike<number>; mobility?: ArrayLike<number>; budget?: ArrayLike<number>; partPairs?: readonly (readonly [number, number])[];
+    rule?: Partial<Rule>;
+  }): Response;
+  /** Frees the memory, of its responses too. Every later call throws. */
   dispose(): void;
+}
+
+/** Keeps hands and arms out of the body, of other bodies and of the ground. */
+export interface Response {
+  readonly body: Body;
+  /** One frame. `joints`: where each joint is in its parent's space, as animated, ten floats each: translation, rotation (a quaternion, x, y,
+   * z, w), scale. The rotations of those that turn are replaced, and `state` is changed. When it throws, both are as they were. The answer is
+   * overwritten by the next call. */
+  respond(state: Uint32Array, joints: Float32Array, options: ResponseOptions): Responded;
+  /** Frees the memory; its body stays. */
+  dispose(): void;
+}
+
+export interface ResponseOptions {
+  /** Since the last frame, up to 1. */
+  seconds: number;
+  /** The place of the roots in the world. */
+  place?: { translation?: ArrayLike<number>; rotation?: ArrayLike<number>; scale?: ArrayLike<number> };
+  morphWeights?: Float32Array;
+  /** From 0, the full response, to 1, none: to fade it. */
+  weakness?: number;
+  /** The most times that contacts are looked for, up to 16; 3 if left out. */
+  rounds?: number;
+  /** Where the joints will be `aheadFrames` later, from 1 to 3: the response then sets in before the contact. Give both in every frame of a
+   * state, or in none. */
+  ahead?: Float32Array;
+  aheadFrames?: number;
+  /** Other characters and props to stay out of, in their poses; at most 8, always in this order. */
+  others?: readonly Body[];
+  ground?: { up?: ArrayLike<number>; height?: number };
+}
+
+export interface Responded {
+  /** How many joints were turned; 0: the joints are as they were, bit for bit. */
+  turned: number;
+  /** How many were not turned as far as wanted. */
+  atBudget: number;
+  /** The sum of Penetration.faultDepth that is left, as far as it is known. */
+  remaining: number;
+  /** In the corrected pose. */
+  rows: Results<ContactRow>;
+}
+
+/** Two spots that are to stay apart: for a solver of your own. If a joint at o turns by the small vector w, the gap grows by
+ * w . ((at - o) x normal) if the joint moves `part`, and shrinks by w . ((atOther - o) x normal) if it moves `other`. */
+export interface ContactRow {
+  part: number;
+  /** -1: the ground. */
+  other: number;
+  /** 0: `other` is a part of the character's own; k: of others[k - 1]. */
+  body: number;
+  /** On the skin of each, in the world. */
+  at: Float32Array;
+  atOther: Float32Array;
+  /** From `other` to `part`, of unit length. */
+  normal: Float32Array;
+  /** Their distance along `normal`; negative: so deep. */
+  gap: number;
+  /** How deep they may be before it is a fault. */
+  allowed: number;
 }
 
 /** The options of a question. Without any it asks what a game asks; `spherechain play` and `check` look at layers, too. */

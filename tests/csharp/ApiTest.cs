@@ -12,6 +12,7 @@ public static class ApiTest
     static readonly Query all = new Query { Classes = Query.AllClasses };
     static float[] deepest;
     static int checks, failures;
+    static ResponseFrame anyFrame;
 
     static void Check(bool holds, string what)
     {
@@ -419,6 +420,230 @@ public static class ApiTest
         }
     }
 
+    // Matrices of 16 floats by columns. The inverse is of one that turns, moves and scales all axes alike.
+    static float[] Times(float[] a, float[] b)
+    {
+        float[] product = new float[16];
+        for (int i = 0; i < 16; ++i)
+        {
+            for (int k = 0; k < 4; ++k) product[i] += a[4 * k + i % 4] * b[i / 4 * 4 + k];
+        }
+        return product;
+    }
+
+    static float[] Inverse(float[] m)
+    {
+        float[] inverse = new float[16];
+        float squared = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
+        for (int i = 0; i < 3; ++i)
+        {
+            for (int k = 0; k < 3; ++k)
+            {
+                inverse[4 * k + i] = m[4 * i + k] / squared;
+                inverse[12 + i] -= m[4 * i + k] * m[12 + k] / squared;
+            }
+        }
+        inverse[15] = 1;
+        return inverse;
+    }
+
+    static JointTransform Decomposed(float[] m)
+    {
+        JointTransform t = new JointTransform { Translation = new Vec3 { X = m[12], Y = m[13], Z = m[14] } };
+        float scale = (float)Math.Sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+        t.Scale = new Vec3 { X = scale, Y = scale, Z = scale };
+        // Each row of this symmetric matrix is the quaternion times one of its entries.
+        float xx = m[0] / scale, yy = m[5] / scale, zz = m[10] / scale, yz = (m[9] + m[6]) / scale, xz = (m[8] + m[2]) / scale,
+              xy = (m[4] + m[1]) / scale, xw = (m[6] - m[9]) / scale, yw = (m[8] - m[2]) / scale, zw = (m[1] - m[4]) / scale;
+        float[][] rows =
+        {
+            new[] { 1 + xx - yy - zz, xy, xz, xw }, new[] { xy, 1 - xx + yy - zz, yz, yw },
+            new[] { xz, yz, 1 - xx - yy + zz, zw }, new[] { xw, yw, zw, 1 + xx + yy + zz },
+        };
+        float[] q = rows.OrderByDescending(row => row.Sum(entry => entry * entry)).First();
+        float size = (float)Math.Sqrt(q.Sum(entry => entry * entry));
+        t.Rotation0 = q[0] / size;
+        t.Rotation1 = q[1] / size;
+        t.Rotation2 = q[2] / size;
+        t.Rotation3 = q[3] / size;
+        return t;
+    }
+
+    // Joints hang on each other as the body parts that they move do.
+    static uint[] Parents(Model model, Palettes clip)
+    {
+        uint[] parents = Enumerable.Repeat(Native.NoJoint, clip.Joints.Length).ToArray();
+        for (int part = 0; part < model.PartCount; ++part)
+        {
+            int above = model.PartParent(part);
+            uint joint = model.PartJoint((uint)part), of_above = above < 0 ? Native.NoJoint : model.PartJoint((uint)above);
+            if (joint != Native.NoJoint && joint != of_above) parents[joint] = of_above;
+        }
+        return parents;
+    }
+
+    static JointTransform[] Locals(Palettes clip, uint[] parents, int frame)
+    {
+        float[][] world = parents.Select((_, joint) => Times(clip.Frames[frame].Skip(16 * joint).Take(16).ToArray(),
+                                                             Inverse(clip.InverseBinds.Skip(16 * joint).Take(16).ToArray()))).ToArray();
+        return world.Select((own, joint) => Decomposed(parents[joint] == Native.NoJoint ? own : Times(Inverse(world[parents[joint]]), own))).ToArray();
+    }
+
+    // The same frames through the class and through the C interface: the same bits.
+    static unsafe void ResponsesTurnArms(Model model, Palettes clip)
+    {
+        const float seconds = 1.0f / 30;
+        uint[] parents = Parents(model, clip);
+        JointTransform[][] frames = Enumerable.Range(24, 11).Select(i => Locals(clip, parents, i)).ToArray();
+        using (Body body = new Body(model))
+        using (Body raw = new Body(model))
+        using (Body other = new Body(model))
+        using (Response response = new Response(body, parents))
+        {
+            other.SetPose(deepest, kColumns, Beside(model, 0.4f));
+            IntPtr handle, met = other.Handle;
+            fixed (uint* above = parents)
+            {
+                Native.ResponseDef def = new Native.ResponseDef { Parents = above, JointCount = new UIntPtr((uint)parents.Length) };
+                Check(Native.sc_create_response(raw.Handle, &def, &handle).Code == Code.Ok, "a response of the C interface");
+            }
+            for (int options = 0; options < 2; ++options)
+            {
+                int turned = 0, rows = 0;
+                ResponseState state = new ResponseState(), copy = new ResponseState();
+                ulong[] words = new ulong[Native.ResponseWords];
+                for (int i = 0; i + 1 < frames.Length; ++i)
+                {
+                    JointTransform[] joints = frames[i].ToArray(), expected = frames[i].ToArray(), replayed = frames[i].ToArray();
+                    JointTransform place = Beside(model, 0.1f);
+                    Ground ground = new Ground { Up = model.Up, Height = model.Origin.Y + 0.5f * model.Height };
+                    Native.Ground plane = new Native.Ground { Up = ground.Up, Height = ground.Height };
+                    ResponseFrame frame = new ResponseFrame { Seconds = seconds };
+                    Native.ResponseFrame f = new Native.ResponseFrame { Seconds = seconds };
+                    if (options == 1)
+                    {
+                        frame = new ResponseFrame
+                        {
+                            Seconds = seconds, Place = place, Weakness = 0.25f, Rounds = 2, Ahead = frames[i + 1], AheadFrames = 1,
+                            Others = new[] { other }, Ground = ground,
+                        };
+                        f = new Native.ResponseFrame
+                        {
+                            Seconds = seconds, Place = &place, Weakness = 0.25f, Rounds = 2, AheadFrames = 1, Others = &met,
+                            OtherCount = new UIntPtr(1), Ground = &plane,
+                        };
+                    }
+                    ResponseFrame again = frame;
+                    copy.CopyFrom(state);
+                    response.Respond(state, joints, ref frame);
+                    fixed (JointTransform* own = expected, ahead = frames[i + 1])
+                    fixed (ulong* memory = words)
+                    {
+                        f.Joints = own;
+                        f.Ahead = options == 1 ? ahead : null;
+                        Check(Native.sc_respond(handle, memory, &f).Code == Code.Ok, "a frame of the C interface");
+                    }
+                    Check(joints.SequenceEqual(expected) && state.Words.SequenceEqual(words), "joints and state of frame " + i);
+                    Check(frame.Turned == f.Turned && frame.AtBudget == f.AtBudget && frame.Remaining == f.Remaining, "answers of frame " + i);
+                    Check(response.Rows.Count == (int)f.RowCount, "rows of frame " + i);
+                    for (int k = 0; k < response.Rows.Count; ++k) Check(response.Rows[k].Equals(f.Rows[k]), "row " + k);
+                    Check(frame.Turned == 0 == joints.SequenceEqual(frames[i]), "joints are turned, or stay");
+                    response.Respond(copy, replayed, ref again);
+                    Check(replayed.SequenceEqual(expected) && copy.Words.SequenceEqual(words), "a copied state replays frame " + i);
+                    turned += frame.Turned;
+                    rows += response.Rows.Count;
+                }
+                Check(turned > 20 && rows > 20, string.Format("{0} turned, {1} rows", turned, rows));
+                state.Reset();
+                Check(state.Words.All(word => word == 0), "a reset state");
+            }
+            Native.sc_destroy_response(handle);
+            other.SetPose(deepest, kColumns, Beside(model, 10));
+            ResponsesAllocateNothing(response, frames, other);
+        }
+    }
+
+    static void ResponsesAllocateNothing(Response response, JointTransform[][] frames, Body other)
+    {
+        ResponseState state = new ResponseState();
+        ResponseFrame frame = new ResponseFrame { Seconds = 1.0f / 30, Others = new[] { other }, Ground = new Ground { Up = response.Body.Model.Up } };
+        JointTransform[] joints = new JointTransform[frames[0].Length];
+        long before = 0;
+        for (int round = 0; round < 2; ++round)
+        {
+            state.Reset();
+            before = GC.GetAllocatedBytesForCurrentThread();
+            foreach (JointTransform[] animated in frames)
+            {
+                animated.CopyTo(joints, 0);
+                response.Respond(state, joints, ref frame);
+                float sum = 0;
+                foreach (ContactRow row in response.Rows) sum += row.Gap;
+            }
+        }
+        long allocated = GC.GetAllocatedBytesForCurrentThread() - before;
+        Check(allocated == 0, allocated + " bytes are allocated in frames of a response");
+    }
+
+    static void WrongResponsesAreRefused(Model model, Palettes clip)
+    {
+        uint[] parents = Parents(model, clip), circle = parents.ToArray();
+        int count = parents.Length;
+        circle[0] = 1;
+        circle[1] = 0;
+        JointTransform[] joints = Locals(clip, parents, 0), given = joints.ToArray(), broken = joints.ToArray();
+        broken[2].Rotation1 = float.NaN;
+        Body body = new Body(model), other = new Body(model), unposed = new Body(model);
+        other.SetPose(deepest, kColumns, Beside(model, 10));
+        Refused("no body", Code.Null, "bodies", "null", () => new Response(null, parents));
+        Refused("no parents", Code.Null, "parents", "null", () => new Response(body, null));
+        Refused("no joints", Code.TooSmall, "joints", "", () => new Response(body, new uint[0]));
+        Refused("few joints", Code.TooSmall, "joints", "", () => new Response(body, parents.Take(2).ToArray()));
+        Refused("a circle", Code.BadValue, "parents", "", () => new Response(body, circle));
+        Refused("few mobilities", Code.TooSmall, "joints", "mobilities", () => new Response(body, parents, new float[1]));
+        Refused("a mobility of 2", Code.BadValue, "joints", "", () => new Response(body, parents, Enumerable.Repeat(2.0f, count).ToArray()));
+        Refused("few budgets", Code.TooSmall, "joints", "budgets", () => new Response(body, parents, budget: new float[1]));
+        Refused("few pairs", Code.TooSmall, "part_pairs", "PairSet", () => new Response(body, parents, partPairs: new ulong[0]));
+        Refused("another rule", Code.BadValue, "rule", "", () => new Response(body, parents, rule: new Rule()));
+        Response response = new Response(body, parents);
+        ResponseState state = new ResponseState();
+        Action<ResponseFrame, JointTransform[]> respond = (frame, own) => response.Respond(state, own, ref frame);
+        Refused("no state", Code.Null, "output", "null", () => { ResponseFrame frame = new ResponseFrame(); response.Respond(null, given, ref frame); });
+        Refused("no joints", Code.Null, "joints", "null", () => respond(new ResponseFrame(), null));
+        Refused("few joints", Code.TooSmall, "joints", "fewer", () => respond(new ResponseFrame(), new JointTransform[1]));
+        Refused("a NaN", Code.BadValue, "transform", "", () => respond(new ResponseFrame(), broken));
+        Refused("two seconds", Code.BadValue, "query", "", () => respond(new ResponseFrame { Seconds = 2 }, given));
+        Refused("rounds below 0", Code.BadValue, "query", "below 0", () => respond(new ResponseFrame { Rounds = -1 }, given));
+        Refused("17 rounds", Code.BadValue, "query", "", () => respond(new ResponseFrame { Rounds = 17 }, given));
+        Refused("few joints ahead", Code.TooSmall, "joints", "ahead", () => respond(new ResponseFrame { Ahead = new JointTransform[1], AheadFrames = 1 }, given));
+        Refused("nothing ahead", Code.Null, "bodies", "", () => respond(new ResponseFrame { AheadFrames = 1 }, given));
+        Refused("no other", Code.Null, "bodies", "null", () => respond(new ResponseFrame { Others = new Body[1] }, given));
+        Refused("itself", Code.BadValue, "bodies", "another", () => respond(new ResponseFrame { Others = new[] { body } }, given));
+        Refused("nine others", Code.BadValue, "bodies", "8", () => respond(new ResponseFrame { Others = Enumerable.Repeat(other, 9).ToArray() }, given));
+        Refused("no pose", Code.NotOpen, "bodies", "", () => respond(new ResponseFrame { Others = new[] { unposed } }, given));
+        Refused("no way up", Code.BadValue, "floor", "", () => respond(new ResponseFrame { Ground = new Ground() }, given));
+        Check(given.SequenceEqual(joints) && state.Words.All(word => word == 0), "joints and state are as they were");
+        respond(new ResponseFrame { Seconds = 0.1f, Others = Enumerable.Repeat(other, 8).ToArray() }, given);
+        Compete("frames", () => respond(new ResponseFrame(), joints.ToArray()), () => response.Respond(new ResponseState(), joints.ToArray(), ref anyFrame));
+        Compete("a new pose of its body", () => respond(new ResponseFrame(), joints.ToArray()), () => body.SetPose(deepest, kColumns));
+        unposed.Dispose();
+        Refused("a disposed other", Code.NotOpen, "bodies", "disposed", () => respond(new ResponseFrame { Others = new[] { unposed } }, given));
+        body.Dispose();
+        Refused("a disposed body", Code.NotOpen, "bodies", "body is disposed", () => respond(new ResponseFrame(), given));
+        response.Dispose();
+        response.Dispose();
+        Refused("a disposed response", Code.NotOpen, "bodies", "response is disposed", () => respond(new ResponseFrame(), given));
+        other.Dispose();
+        for (int i = 0; i < 5; ++i)  // dropped without Dispose()
+        {
+            Response dropped = new Response(new Body(model), parents);
+            GC.Collect();
+            GC.WaitForPendingFinalizers();
+            ResponseFrame frame = new ResponseFrame();
+            dropped.Respond(state, given, ref frame);
+        }
+    }
+
     static void MirrorsAreTheirOwnInverse()
     {
         float[] m = Enumerable.Range(1, 16).Select(x => (float)x).ToArray();
@@ -449,6 +674,8 @@ public static class ApiTest
             FramesAllocateNothing(model, clip);
             ThreadsShareAModel(model, clip);
             ABodyIsOneThreads(model);
+            ResponsesTurnArms(model, clip);
+            WrongResponsesAreRefused(model, clip);
         }
         DroppedObjectsAreFreed(file, clip);
         MirrorsAreTheirOwnInverse();

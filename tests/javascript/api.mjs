@@ -383,9 +383,124 @@ test('a skeleton that does not fit is refused, and the joint named', () => {
   named.dispose();
 });
 
+// Joints of an animation that stands still: each at its place at rest, without a turn. They hang on each other as body parts do.
+function standing(model) {
+  const parents = new Int32Array(model.jointCount).fill(-1), joints = new Float32Array(10 * model.jointCount), places = [];
+  for (const { joint, parent } of model.parts) if (joint >= 0 && parent >= 0 && model.parts[parent].joint !== joint) parents[joint] = model.parts[parent].joint;
+  model.bones.forEach(({ name, inverseBind: m }) => {
+    places[model.bones.findIndex(bone => bone.name === name)] = [0, 1, 2].map(i => -(m[4 * i] * m[12] + m[4 * i + 1] * m[13] + m[4 * i + 2] * m[14]));
+  });
+  parents.forEach((parent, joint) => {
+    const above = parent < 0 ? [0, 0, 0] : places[parent];
+    joints.set([...places[joint].map((value, i) => value - above[i]), 0, 0, 0, 1, 1, 1, 1], 10 * joint);
+  });
+  return { parents, joints };
+}
+
+test('a response turns arms out of a body, of another one and of the ground', () => {
+  const model = spherechain.createModel(bytes), body = model.createBody(), other = model.createBody();
+  const { parents, joints: still } = standing(model), response = body.createResponse({ parents });
+  const options = { seconds: 1 / 30 }, upperArm = model.parts.find(({ name }) => name === 'left upper arm').joint;
+  const play = (own, state, turns, more = {}) => turns.map(turn => {
+    const joints = still.slice();
+    joints.set([0, 0, Math.sin(turn / 2), Math.cos(turn / 2)], 10 * upperArm + 3);
+    const { turned, rows } = own.respond(state, joints, { ...options, ...more });
+    return { joints, turned, rows: structuredClone([...rows]) };
+  });
+  assert.equal(response.body, body);
+  const first = spherechain.createResponseState();
+  assert.equal(first.length, 960);
+  const [alone] = play(response, first, [0]);
+  assert.deepEqual([alone.turned, alone.joints], [0, still]);
+
+  const turns = Array.from({ length: 30 }, (_, i) => -i / 20), state = spherechain.createResponseState();
+  const found = play(response, state, turns);
+  const turned = found.reduce((sum, frame) => sum + frame.turned, 0);
+  assert.ok(turned > 5, `${turned}`);
+  const [row] = found.flatMap(({ rows }) => rows);
+  assert.ok(row.body === 0 && row.part !== row.other && Math.abs(Math.hypot(...row.normal) - 1) < 1e-5 && row.allowed >= 0);
+  assert.ok(state.some(word => word !== 0));
+  const copy = state.slice(), again = body.createResponse({ parents: [...parents] });
+  assert.deepEqual(play(again, copy, turns), play(response, state, turns));
+  assert.deepEqual(copy, state);
+  const sum = frames => frames.reduce((total, frame) => total + frame.turned, 0);
+  const fresh = (settings, more) => sum(play(body.createResponse({ parents, ...settings }), spherechain.createResponseState(), turns, more));
+  assert.equal(fresh({}), turned);
+  assert.equal(fresh({ mobility: new Float32Array(parents.length) }), 0);
+  assert.equal(fresh({ budget: new Float32Array(parents.length) }), 0);
+  assert.equal(fresh({ partPairs: [] }), 0);
+  assert.equal(fresh({}, { weakness: 1 }), 0);
+  assert.ok(fresh({ rule: { touchDepth: 0.02 } }) !== turned);
+  assert.ok(fresh({}, { ahead: still, aheadFrames: 1, rounds: 2 }) !== turned);
+
+  other.setPose(new Float32Array(12 * model.jointCount).map((_, i) => (i % 12 % 5 === 0 ? 1 : 0)), { place: { translation: [0.9 * model.height, 0, 0] } });
+  const place = { translation: [0.3 * model.height, 0, 0] }, high = { height: 0.8 * model.height };
+  const sides = more => new Set(play(again, spherechain.createResponseState(), turns.slice(0, 10), more).flatMap(({ rows }) => rows.map(one => one.body)));
+  assert.ok(sides({ place, others: [other] }).has(1));
+  assert.ok(sides({ ground: high }).has(1));
+  assert.ok(play(again, spherechain.createResponseState(), [0], { ground: high })[0].rows.some(one => one.other === -1));
+  model.dispose();
+});
+
+test('wrong arguments of a response are refused', () => {
+  const model = spherechain.createModel(bytes), body = model.createBody(), unposed = model.createBody();
+  const { parents, joints } = standing(model), response = body.createResponse({ parents }), state = spherechain.createResponseState();
+  const create = (options, message) => refuses(() => body.createResponse(options), message);
+  create(undefined, /createResponse\(\): an object is wanted/);
+  create({ parents, speed: 3 }, /"speed" is none of parents/);
+  create({}, /parents: a number for each joint/);
+  create({ parents: [0.5] }, /parents: a number for each joint/);
+  create({ parents: parents.subarray(2) }, /^(joints|parents): /);
+  create({ parents: [0, ...parents.subarray(1)] }, /^parents: /);
+  create({ parents, mobility: [1] }, /mobility: a number for each joint is wanted, not an Array of 1/);
+  create({ parents, mobility: new Float32Array(parents.length).fill(2) }, /^joints: /);
+  create({ parents, budget: new Float32Array(parents.length).fill(NaN) }, /budget/);
+  create({ parents, partPairs: [[0, 999]] }, /partPairs: \[0, 999\]/);
+  create({ parents, rule: { touchDepth: NaN } }, /rule/);
+
+  const before = joints.slice(), seconds = 1 / 30;
+  const respond = (options, message, own = joints, words = state) => refuses(() => response.respond(words, own, options), message);
+  respond(undefined, /respond\(\): an object is wanted/);
+  respond({ seconds, rows: 3 }, /"rows" is none of seconds/);
+  respond({ seconds }, /state: what createResponseState\(\) made/, joints, new Uint32Array(3));
+  respond({ seconds }, /joints: a Float32Array of \d+ is wanted/, joints.subarray(1));
+  respond({ seconds }, /joints: a Float32Array/, [...joints]);
+  respond({ seconds }, /^transform: /, new Float32Array(joints.length));
+  respond({ seconds: NaN }, /^query: /);
+  respond({ seconds: 2 }, /^query: /);
+  respond({ seconds: '1' }, /seconds: a number is wanted/);
+  respond({ seconds, weakness: -1 }, /^query: /);
+  respond({ seconds, rounds: 17 }, /^query: /);
+  respond({ seconds, rounds: 1.5 }, /rounds: a whole number/);
+  respond({ seconds, ahead: joints }, /ahead, aheadFrames: both/);
+  respond({ seconds, aheadFrames: 1 }, /ahead, aheadFrames: both/);
+  respond({ seconds, ahead: joints, aheadFrames: 4 }, /^query: /);
+  respond({ seconds, ahead: joints.subarray(1), aheadFrames: 1 }, /ahead: a Float32Array/);
+  respond({ seconds, place: { rotation: [0, 0, 1] } }, /rotation: 4 numbers/);
+  respond({ seconds, morphWeights: new Float32Array(3) }, /3 morph weights/);
+  respond({ seconds, others: body }, /others: a list is wanted/);
+  respond({ seconds, others: [model] }, /others\[0\]: a body is wanted, not a Model/);
+  respond({ seconds, others: [unposed] }, /setPose/);
+  respond({ seconds, others: [body] }, /another body/);
+  respond({ seconds, others: Array(9).fill(unposed) }, /at most 8/);
+  respond({ seconds, ground: { up: [0, 0, 0] } }, /floor/);
+  assert.deepEqual(joints, before);
+  assert.ok(state.every(word => word === 0));
+  response.respond(state, joints, { seconds });
+  const second = body.createResponse({ parents });
+  second.dispose();
+  second.dispose();
+  refuses(() => second.respond(state, joints, { seconds }), /disposed/);
+  body.dispose();
+  respond({ seconds }, /disposed/);
+  refuses(() => body.createResponse({ parents }), /disposed/);
+  model.dispose();
+});
+
 test('memory is given back', () => {
   const round = () => {
     const model = spherechain.createModel(bytes, joints), body = model.createBody(), ignoredPairs = model.createIgnoredPairs();
+    body.createResponse({ parents: new Int32Array(joints.length).fill(-1) });
     body.setPose(posed);
     body.setPose(null, { vertices: new Float32Array(3 * model.vertexCount) });
     body.penetrations({ ignoredPairs });

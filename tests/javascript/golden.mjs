@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// golden.mjs PACKAGE FOLDER CLIP: the golden hashes of tests/golden that come from bone matrices, by the package.
+// golden.mjs PACKAGE FOLDER CLIP JOINTS: the golden hashes of tests/golden that come from bone matrices and from joints, by the package.
 import { readFileSync } from 'node:fs';
 import { pathToFileURL } from 'node:url';
 import { addPartContact, addPenetration } from './frame_hashes.mjs';
 
-const [packageFolder, folder, clip] = process.argv.slice(2);
+const [packageFolder, folder, clip, jointsFile] = process.argv.slice(2);
 const { load } = await import(pathToFileURL(`${packageFolder}/index.js`));
 
 // FNV-1a of 64 bits over words of 32, low byte first: tests/golden/hashes.cpp.
@@ -84,6 +84,17 @@ for (let frame = 0; frame < frames; ++frame) {
     measured.count += previous.total;
     measured.word(END);
   }
+}
+
+const joints = readFileSync(jointsFile), jointWords = new Uint32Array(joints.buffer, joints.byteOffset, joints.length / 4);
+const jointCount = jointWords[0], parents = jointWords.slice(1, 1 + jointCount), state = spherechain.createResponseState();
+const transforms = new Float32Array(joints.buffer, joints.byteOffset).subarray(1 + jointCount);
+const response = body.createResponse({ parents }), turns = hash('response');
+for (let at = 0; at < transforms.length; at += 10 * jointCount) {
+  const own = transforms.slice(at, at + 10 * jointCount);
+  response.respond(state, own, { seconds: 1 / 32 });
+  for (let joint = 0; joint < jointCount; ++joint) turns.floats(own.subarray(10 * joint + 3, 10 * joint + 7));
+  turns.count += jointCount;
 }
 
 const wanted = new Set(readFileSync(`${folder}/hashes.txt`, 'utf8').split('\n'));

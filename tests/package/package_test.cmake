@@ -12,7 +12,7 @@
 set(expected_pairs "60 spheres, ${PAIRS} pairs")
 set(expected "${expected_pairs}, ${PARTS} pairs of body parts\n")
 # The public headers, and nothing else.
-set(headers asset body contacts crowd model pose rule spherechain types version)
+set(headers asset body contacts crowd model pose response rule spherechain types version)
 list(TRANSFORM headers APPEND .h)
 
 function(run)

@@ -2,10 +2,14 @@
 /* reference ASSET BONES: what the C interface answers, for a comparison bit by bit. BONES holds matrices of 3 by 4
  * floats, pose after pose. For each pose it writes to standard output the spheres; each after their number as 8 bytes,
  * the pairs of spheres, contacts of parts, spheres and triangles, all penetrations, the faults, what is below y = 0,
- * what is in the first pose, the touches on the way from there; and the bounds. */
+ * what is in the first pose, the touches on the way from there; and the bounds.
+ * reference ASSET BONES PARENTS JOINTS: what a response makes of JOINTS, frame after frame, twice: alone, and with all
+ * its options, beside another body in the first pose of BONES. For each frame it writes the joints, what is said of
+ * them, and the rows after their number. */
 #include <spherechain/spherechain.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { kMaxTriangles = 65536, kMaxPenetrations = 512 };
 
@@ -37,8 +41,47 @@ static void put(const void* entries, size_t size, size_t count) {
   fwrite(entries, size, count, stdout);
 }
 
+static void respond(sc_body* body, const sc_body* other, const char* parents, const char* joints, int with_options) {
+  size_t size, joints_size;
+  sc_response_def def = {0};
+  def.parents = read_file(parents, &size);
+  def.joint_count = size / sizeof *def.parents;
+  sc_transform* clip = read_file(joints, &joints_size);
+  const size_t frame_size = def.joint_count * sizeof *clip, frames = joints_size / frame_size;
+  sc_response* response;
+  require(sc_create_response(body, &def, &response));
+  sc_transform* own = malloc(frame_size);
+  const sc_transform place = {{0.25f, 0.5f, 0}, {0, 0.6f, 0, 0.8f}, {1, 1, 1}};
+  const sc_ground ground = {{0, 1, 0}, 0.75f, NULL, NULL};
+  uint64_t state[SC_RESPONSE_WORDS] = {0};
+  for (size_t i = 0; i < frames; ++i) {
+    memcpy(own, clip + i * def.joint_count, frame_size);
+    sc_response_frame frame = {0};
+    frame.joints = own;
+    frame.seconds = 1.0f / 32;
+    if (with_options) {
+      frame.place = &place;
+      frame.weakness = 0.25f;
+      frame.rounds = 2;
+      frame.ahead = clip + (i + 1 < frames ? i + 1 : i) * def.joint_count;
+      frame.ahead_frames = 1;
+      frame.others = &other;
+      frame.other_count = 1;
+      frame.ground = &ground;
+    }
+    require(sc_respond(response, state, &frame));
+    fwrite(own, frame_size, 1, stdout);
+    fwrite(&frame.turned, sizeof frame.turned, 1, stdout);
+    fwrite(&frame.at_budget, sizeof frame.at_budget, 1, stdout);
+    fwrite(&frame.remaining, sizeof frame.remaining, 1, stdout);
+    put(frame.rows, sizeof *frame.rows, frame.row_count);
+  }
+  fwrite(state, sizeof state, 1, stdout);
+  sc_destroy_response(response);
+}
+
 int main(int argc, char** argv) {
-  if (argc != 3) {
+  if (argc != 3 && argc != 5) {
     return 2;
   }
   size_t size, bones_size;
@@ -58,6 +101,16 @@ int main(int argc, char** argv) {
   require(sc_create_body(model, &body_def, &body));
   require(sc_create_body(model, &body_def, &other));
   const size_t floats = 12 * info.bone_count, poses = bones_size / (floats * sizeof(float));
+  if (argc == 5) {
+    sc_pose pose = {0};
+    pose.bones = bones;
+    pose.bone_count = info.bone_count;
+    pose.bone_layout = SC_ROWS_3X4;
+    require(sc_set_pose(other, &pose, NULL));
+    respond(body, other, argv[3], argv[4], 0);
+    respond(body, other, argv[3], argv[4], 1);
+    return 0;
+  }
   sc_query query = {0};
   query.full = 1;
   query.classes = ~0U;

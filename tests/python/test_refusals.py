@@ -170,7 +170,7 @@ class Refusals(unittest.TestCase):
 
     def test_types_name_all_that_the_module_has(self):
         stub = Path(spherechain.__file__).with_name("_native.pyi").read_text()
-        names = {name for name in dir(_native.Model) if not name.startswith("_")}
+        names = {name for kind in (_native.Model, _native.Response) for name in dir(kind) if not name.startswith("_")}
         self.assertEqual(set(re.findall(r"    def (\w+)\(", stub)) - {"__init__"}, names)
 
 

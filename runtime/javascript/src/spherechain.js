@@ -13,10 +13,11 @@ function refuse(why) {
 
 let loading = null;
 let call, bytes, words, floats;  // the module's functions, and views of all its memory
-let status, query, subject, pose, out, sentence;  // where calls pass structs
+let status, query, subject, pose, out, responseFrame, sentence;  // where calls pass structs
 const SENTENCE_BYTES = 256;
 const ABI_VERSION = 16, IGNORED_PAIRS = 30;  // SC_ABI_VERSION, and where sc_asset_info.ignored_pairs is: module.cpp asserts both
-const handles = new WeakMap();  // where models, bodies and ignored pairs are in memory, until they are disposed of
+const STATE_WORDS = 960, JOINT_FLOATS = 10, OTHERS_MAX = 8;  // twice SC_RESPONSE_WORDS; an sc_transform
+const handles = new WeakMap();  // where models, bodies, responses and ignored pairs are in memory, until they are disposed of
 
 export function load() {
   return (loading ??= instantiate());
@@ -28,7 +29,7 @@ async function instantiate() {
   call = instance.exports;
   look();
   call._initialize?.();
-  [status, query, subject, pose, out, sentence] = [8, 60, 56, 40, 128, SENTENCE_BYTES].map(allocate);
+  [status, query, subject, pose, out, responseFrame, sentence] = [8, 60, 56, 40, 128, 72, SENTENCE_BYTES].map(allocate);
   return new Spherechain();
 }
 
@@ -221,6 +222,22 @@ const Query = struct({
   tolerance: float, radius: choice('detect', 'fit'), target: int,
 });
 
+const integers = () => copied(value => 4 * value.length, (place, value) => words.set(value, place / 4));
+const ContactRow = struct({ part: int, other: int, body: int, at: vec3, atOther: vec3, normal: vec3, gap: float, allowed: float });
+const ResponseDef = struct({
+  parents: integers(), jointCount: int, mobility: copiedFloats(), budget: copiedFloats(), partPairs: integers(), rule: limits, allocator: int,
+});
+const ResponseFrame = struct({
+  joints: copiedFloats(), place: copied(() => 4 * Transform.words, Transform.write), morphWeights: copiedFloats(), morphWeightCount: int,
+  seconds: float, weakness: float, rounds: int, ahead: copiedFloats(), aheadFrames: int,
+  others: copied(value => 4 * value.length, (place, value) => value.forEach((other, i) => {
+    words[place / 4 + i] = other instanceof Body ? handleOf(other, 'other body') : refuse(`others[${i}]: a body is wanted, not ${kindOf(other)}`);
+  })),
+  otherCount: int, ground: copied(() => 4 * Ground.words, Ground.write), target: int, turned: int, atBudget: int, remaining: float, rows: int,
+  rowCount: int,
+});
+const responseState = integers();
+
 class Spherechain {
   version = textAt(call.version());
   classes = Object.freeze([...CLASSES]);
@@ -241,6 +258,10 @@ class Spherechain {
       check(true);
       return new Model(words[out / 4], joints?.length);
     });
+  }
+
+  createResponseState() {
+    return new Uint32Array(STATE_WORDS);
   }
 
   classify(measures, rule = {}) {
@@ -365,6 +386,7 @@ class Body {
   #steps = listOf(StepContact);
   #contacts = { parts: [], spheres: null, sphereTotal: 0, triangles: null, segments: null, triangleTotal: 0 };
   #spherePairs = { spheres: null, pairs: null, total: 0 };
+  #responses = new Set();
   #bounds = { low: vec3.make(), high: vec3.make() };
 
   constructor(model, free) {
@@ -440,7 +462,31 @@ class Body {
     return this.#view(5, Float32Array, place, 3 * count);
   }
 
+  createResponse(options) {
+    const body = handleOf(this, 'body'), { partCount } = this.model;
+    checkKeys(options, RESPONSE_KEYS, 'createResponse()');
+    const { parents, mobility, budget, partPairs, rule } = options;
+    checkNumbers(parents, parents?.length, 'parents', Number.isInteger);
+    for (const [name, given] of [['mobility', mobility], ['budget', budget]]) {
+      if (given !== undefined) checkNumbers(given, parents.length, name);
+    }
+    ResponseDef.write(subject, {
+      parents, jointCount: parents.length, mobility, budget, rule,
+      partPairs: partPairs === undefined ? undefined : pairBits(partPairs, partCount, partCount),
+    }, 'response');
+    call.sc_create_response(status, body, subject, out);
+    check();
+    const place = words[out / 4], made = new Response(this, parents.length, () => {
+      if (this.#responses.delete(made)) call.sc_destroy_response(place);
+      handles.delete(made);
+    });
+    handles.set(made, place);
+    this.#responses.add(made);
+    return made;
+  }
+
   dispose() {
+    for (const made of [...this.#responses]) made.dispose();
     this.#free();
     this.#rooms.splice(0).forEach(({ place }) => call.free(place));
   }
@@ -465,6 +511,61 @@ class Body {
     const { buffer } = call.memory, last = this.#views[slot];
     if (last?.buffer === buffer && last.byteOffset === place && last.length === length) return last;
     return (this.#views[slot] = new Type(buffer, place, length));
+  }
+}
+
+const RESPONSE_KEYS = ['parents', 'mobility', 'budget', 'partPairs', 'rule'];
+const FRAME_KEYS = ['seconds', 'place', 'morphWeights', 'weakness', 'rounds', 'ahead', 'aheadFrames', 'others', 'ground'];
+const FRAME_JOINTS = 0, FRAME_TURNED = 13, FRAME_AT_BUDGET = 14, FRAME_REMAINING = 15, FRAME_ROWS = 16;  // words of an sc_response_frame
+
+class Response {
+  #jointCount;
+  #rows = listOf(ContactRow);
+  #answer = { turned: 0, atBudget: 0, remaining: 0, rows: null };
+
+  constructor(body, jointCount, dispose) {
+    Object.assign(this, { body, dispose });
+    this.#jointCount = jointCount;
+  }
+
+  respond(state, joints, options) {
+    const response = handleOf(this, 'response'), length = JOINT_FLOATS * this.#jointCount, { morphCount } = this.body.model;
+    checkKeys(options, FRAME_KEYS, 'respond()');
+    const { ahead, aheadFrames = 0, others = [], morphWeights } = options;
+    if (!(state instanceof Uint32Array) || state.length !== STATE_WORDS) refuse(`state: what createResponseState() made is wanted, not ${kindOf(state)}`);
+    checkJointFloats(joints, length, 'joints');
+    if (ahead !== undefined) checkJointFloats(ahead, length, 'ahead');
+    if ((ahead === undefined) !== (aheadFrames === 0)) refuse('ahead, aheadFrames: both are wanted, or neither');
+    if (checkList(others, 'others').length > OTHERS_MAX) refuse(`others: at most ${OTHERS_MAX} bodies are wanted, not ${others.length}`);
+    if (morphWeights && morphWeights.length !== morphCount) refuse(`${morphWeights.length} morph weights: the asset has ${morphCount} morphs`);
+    ResponseFrame.write(responseFrame, {
+      ...options, joints, aheadFrames, others, otherCount: others.length, morphWeightCount: morphWeights?.length,
+    }, 'frame');
+    responseState.write(out, state);
+    const memory = words[out / 4] / 4, at = responseFrame / 4, own = words[at + FRAME_JOINTS] / 4;
+    call.sc_respond(status, response, 4 * memory, responseFrame);
+    check();
+    state.set(words.subarray(memory, memory + STATE_WORDS));
+    joints.set(floats.subarray(own, own + length));
+    const answer = this.#answer;
+    answer.turned = words[at + FRAME_TURNED];
+    answer.atBudget = words[at + FRAME_AT_BUDGET];
+    answer.remaining = floats[at + FRAME_REMAINING];
+    words.copyWithin(out / 4, at + FRAME_ROWS, at + FRAME_ROWS + 2);
+    answer.rows = this.#rows(words[out / 4 + 1]);
+    return answer;
+  }
+}
+
+function checkJointFloats(array, length, name) {
+  if (!(array instanceof Float32Array) || array.length !== length) {
+    refuse(`${name}: a Float32Array of ${length} is wanted, translation, rotation and scale of each joint, not ${kindOf(array)}`);
+  }
+}
+
+function checkNumbers(list, length, name, isOne = Number.isFinite) {
+  if (!(list?.length === length && length > 0) || !Array.prototype.every.call(list, isOne)) {
+    refuse(`${name}: a number for each joint is wanted, not ${kindOf(list)}`);
   }
 }
 

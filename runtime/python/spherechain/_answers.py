@@ -38,7 +38,18 @@ TRIANGLE_PAIR = np.dtype([
 STEP = np.dtype([("part_a", "u4"), ("part_b", "u4"), ("at_start", "i4"), ("at_end", "i4"), ("begin", "f4"), ("end", "f4"),
                  ("triangle_a", "u4"), ("triangle_b", "u4"), ("at", "f4", 3)])
 
-assert _native.SIZES == tuple(d.itemsize for d in (PENETRATION, PART_CONTACT, SPHERE_PAIR, TRIANGLE_PAIR, STEP))
+#: Where a joint is in its parent's space (sc_transform). The rotation is a quaternion, x, y, z, w, of about unit length;
+#: scale 1 keeps the size.
+TRANSFORM = np.dtype([("translation", "f4", 3), ("rotation", "f4", 4), ("scale", "f4", 3)])
+
+#: Two spots that are to stay apart (sc_contact_row). If a joint at o turns by the small vector w, the gap grows by
+#: w . cross(at - o, normal) if the joint moves `part`, and shrinks by w . cross(at_other - o, normal) if it moves `other`.
+#: `body` 0: `other` is a part of the same character; k: of others[k - 1], or 2**32 - 1, the ground.
+CONTACT_ROW = np.dtype([("part", "u4"), ("other", "u4"), ("body", "u4"), ("at", "f4", 3), ("at_other", "f4", 3),
+                        ("normal", "f4", 3), ("gap", "f4"), ("allowed", "f4")])
+
+assert _native.SIZES == tuple(d.itemsize for d in (
+    PENETRATION, PART_CONTACT, SPHERE_PAIR, TRIANGLE_PAIR, STEP, TRANSFORM, CONTACT_ROW))
 
 CLASSES = tuple(_native.Class.__members__)
 FAULTS = CLASSES[4:]

@@ -468,7 +468,8 @@ def _bits(name: str, numbers: Optional[Sequence], *shape: int) -> Optional[NDArr
     """Words with a bit for each number below shape[0], or for each pair of numbers below both of `shape`."""
     if numbers is None:
         return None
-    places = np.array(list(numbers)).reshape(len(numbers), -1)
+    places = np.array(list(numbers))
+    places = places.reshape(len(places), -1) if places.size else np.zeros((0, len(shape)), int)
     if places.size and (places.dtype.kind not in "iu" or places.shape[1] != len(shape)):
         raise TypeError(f"{name} is {numbers!r}: pass a list of {'pairs of ' * (len(shape) > 1)}numbers of parts")
     bits = np.zeros(-(-np.prod(shape) // 64) * 64, np.uint8)

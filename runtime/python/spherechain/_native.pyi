@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 VERSION: str
-SIZES: Tuple[int, int, int, int, int]
+RESPONSE_WORDS: int
+SIZES: Tuple[int, ...]
 
 class Radius: ...
 class Scope: ...
@@ -44,3 +45,18 @@ class Model:
     def points_vjp(
         self, count: int, rows: Numbers, triangles: Numbers, weights: Floats, slopes: Floats, morph_weights: Optional[Floats]
     ) -> Floats: ...
+
+class Response:
+    def __init__(
+        self,
+        model: Model,
+        parents: Numbers,
+        mobility: Optional[Floats],
+        budget: Optional[Floats],
+        part_pairs: Optional[NDArray[np.uint64]],
+        rule: Sequence[float],
+        largest_other: Optional[Model],
+    ) -> None: ...
+    def respond(
+        self, state: NDArray[np.uint64], joints: Floats, frame: dict[str, Any]
+    ) -> Tuple[int, int, float, bytes]: ...

@@ -2,6 +2,7 @@
 #include "model.h"
 
 #include <algorithm>
+#include <array>
 #include <new>
 #include <stdexcept>
 
@@ -95,6 +96,52 @@ Body LoadedModel::take_body(const LoadedModel& other, bool finds_steps, std::siz
 void LoadedModel::give_back(Body body) const {
   const std::lock_guard lock(mutex_);
   spare_.push_back(std::move(body));
+}
+
+SkinPoses skin_poses_of(const LoadedModel& model, const py::object& given) {
+  SkinPoses out;
+  if (given.is_none()) {
+    return out;
+  }
+  const auto [bones, vertices, morph_weights] = given.cast<std::array<std::optional<Array<float>>, 3>>();
+  require(bones || vertices, "bones");
+  out.kept = bones ? *bones : *vertices;
+  out.count = length(out.kept);
+  if (bones) {
+    out.bones = poses_of(model.joint_count(), out.kept);
+  } else {
+    out.vertices = checked(out.kept, {out.count, model.info().vertex_count, 3}, "vertices");
+  }
+  out.morph_weights = morphs_of(model, morph_weights, out.count);
+  return out;
+}
+
+Pose pose_of(const LoadedModel& model, const SkinPoses& poses, std::size_t i) {
+  const AssetInfo& info = model.info();
+  Pose pose;
+  if (poses.vertices == nullptr) {
+    pose = pose_of(poses.bones, model.joint_count(), i);
+  } else {
+    pose.vertices = poses.vertices + 3 * i * info.vertex_count;
+    pose.vertex_count = info.vertex_count;
+  }
+  if (poses.morph_weights != nullptr) {
+    pose.morph_weights = poses.morph_weights + i * info.morph_count;
+    pose.morph_weight_count = info.morph_count;
+  }
+  return pose;
+}
+
+std::vector<float> default_rule() {
+  const Rule rule = sc_default_rule();
+  return {&rule.touch_depth, &rule.inside + 1};
+}
+
+Rule rule_of(const std::vector<float>& limits) {
+  Rule rule = sc_default_rule();
+  require(limits.size() == default_rule().size(), "rule");
+  std::copy(limits.begin(), limits.end(), &rule.touch_depth);
+  return rule;
 }
 
 }  // namespace spherechain::python

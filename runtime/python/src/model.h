@@ -120,7 +120,24 @@ inline const float* morphs_of(const LoadedModel& model, const std::optional<Arra
   return weights ? checked(*weights, {count, model.info().morph_count}, "morph_weights") : nullptr;
 }
 
+// Where the skin is in each pose: by matrices, or by vertices.
+struct SkinPoses {
+  Array<float> kept;
+  Poses<float> bones{};                                       // data null: none
+  const float *vertices = nullptr, *morph_weights = nullptr;  // null: none; pose by pose
+  std::size_t count = 0;
+};
+
+// `given` is (bones, vertices, morph_weights), each an array or None; or it is None: there are no poses.
+SkinPoses skin_poses_of(const LoadedModel& model, const py::object& given);
+Pose pose_of(const LoadedModel& model, const SkinPoses& poses, std::size_t i);
+
+// The limits that sc_rule has from its second field on.
+std::vector<float> default_rule();
+Rule rule_of(const std::vector<float>& limits);
+
 void define_questions(py::class_<LoadedModel>& model);
 void define_losses(py::class_<LoadedModel>& model);
+void define_response(py::module_& module);
 
 }  // namespace spherechain::python

@@ -68,8 +68,9 @@ PYBIND11_MODULE(_native, module) {
   using namespace spherechain::python;
   main_thread = py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>();
   module.attr("VERSION") = SC_VERSION;
+  module.attr("RESPONSE_WORDS") = SC_RESPONSE_WORDS;
   module.attr("SIZES") = py::make_tuple(sizeof(Penetration), sizeof(PartContact), sizeof(Pair), sizeof(TriangleContact),
-                                        sizeof(StepContact));
+                                        sizeof(StepContact), sizeof(Transform), sizeof(ContactRow));
   py::enum_<Radius>(module, "Radius").value("detect", SC_RADIUS_DETECT).value("fit", SC_RADIUS_FIT);
   py::enum_<Scope>(module, "Scope")
       .value("apart", SC_SCOPE_APART)
@@ -88,4 +89,5 @@ PYBIND11_MODULE(_native, module) {
       .def("triangle", &triangle);
   define_questions(model);
   define_losses(model);
+  define_response(module);
 }

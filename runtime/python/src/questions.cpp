@@ -10,14 +10,6 @@ namespace {
 
 enum class Question { kPenetrations, kContacts, kSteps, kGround, kBounds };
 
-// Where the skin is in each pose: by matrices, or by vertices.
-struct SkinPoses {
-  Array<float> kept;
-  Poses<float> bones{};                                       // data null: none
-  const float *vertices = nullptr, *morph_weights = nullptr;  // null: none; pose by pose
-  std::size_t count = 0;
-};
-
 // One of the bodies that are asked about, and of steps where it comes from.
 struct Side {
   const LoadedModel* model = nullptr;
@@ -107,23 +99,11 @@ class Asker {
   void set_poses(std::size_t i) {
     for (std::size_t k = 0; k < 2 && bodies_[k]; ++k) {
       const Side& side = asked_.sides[k];
-      const AssetInfo& info = side.model->info();
       for (const SkinPoses* poses : {&side.before, &side.now}) {
         if (i >= poses->count) {
           continue;
         }
-        Pose pose;
-        if (poses->vertices == nullptr) {
-          pose = pose_of(poses->bones, side.model->joint_count(), i);
-        } else {
-          pose.vertices = poses->vertices + 3 * i * info.vertex_count;
-          pose.vertex_count = info.vertex_count;
-        }
-        if (poses->morph_weights != nullptr) {
-          pose.morph_weights = poses->morph_weights + i * info.morph_count;
-          pose.morph_weight_count = info.morph_count;
-        }
-        require(bodies_[k].set_pose(pose));
+        require(bodies_[k].set_pose(pose_of(*side.model, *poses, i)));
       }
     }
   }
@@ -143,31 +123,6 @@ class Asker {
   const Asked& asked_;
   Body bodies_[2];
 };
-
-// `given` is (bones, vertices, morph_weights), each an array or None; or it is None: there are no poses.
-SkinPoses skin_poses_of(const LoadedModel& model, const py::object& given) {
-  SkinPoses out;
-  if (given.is_none()) {
-    return out;
-  }
-  const auto [bones, vertices, morph_weights] = given.cast<std::array<std::optional<Array<float>>, 3>>();
-  require(bones || vertices, "bones");
-  out.kept = bones ? *bones : *vertices;
-  out.count = length(out.kept);
-  if (bones) {
-    out.bones = poses_of(model.joint_count(), out.kept);
-  } else {
-    out.vertices = checked(out.kept, {out.count, model.info().vertex_count, 3}, "vertices");
-  }
-  out.morph_weights = morphs_of(model, morph_weights, out.count);
-  return out;
-}
-
-// The limits that sc_rule has from its second field on.
-std::vector<float> default_rule() {
-  const Rule rule = sc_default_rule();
-  return {&rule.touch_depth, &rule.inside + 1};
-}
 
 // `query` has the fields of an sc_query by their names. Both sides are (poses before or None, poses).
 py::list ask(const LoadedModel& model, int question, const py::tuple& poses, const LoadedModel* other,
@@ -212,10 +167,7 @@ py::list ask(const LoadedModel& model, int question, const py::tuple& poses, con
     }
     q.ignored_pairs = ignored.data();
   }
-  Rule rule = sc_default_rule();
-  const auto limits = query["rule"].cast<std::vector<float>>();
-  require(limits.size() == default_rule().size(), "rule");
-  std::copy(limits.begin(), limits.end(), &rule.touch_depth);
+  const Rule rule = rule_of(query["rule"].cast<std::vector<float>>());
   q.rule = &rule;
   const auto [x, y, z, height] = query["ground"].cast<std::array<float, 4>>();
   asked.ground.up = {x, y, z};

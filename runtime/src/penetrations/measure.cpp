@@ -441,7 +441,9 @@ class Measurer {
     return is_known ? static_cast<float>(volume.volume) : -1;
   }
 
-  bool lists_faults_alone() const { return in_.along || in_.classes >> SC_CLASS_DEEP_FOLD << SC_CLASS_DEEP_FOLD == in_.classes; }
+  bool lists_faults_alone() const {
+    return in_.along || in_.classes >> SC_CLASS_DEEP_FOLD << SC_CLASS_DEEP_FOLD == in_.classes;
+  }
 
   // The measurements that need no way out.
   Measures measures_of(const TwoParts& parts) const {
