@@ -26,7 +26,7 @@ typedef struct sc_response_def {
 
 /* A character's state, what its response remembers of the frames before, is so many 64-bit words of the caller's.
  * Zeros: nothing. Set it so at first, and where the animation cuts or the character is moved elsewhere. A copy replays
- * the same, on every machine. */
+ * the same, on every machine. Any words are safe to pass; those that make no sense are forgotten. */
 #define SC_RESPONSE_WORDS 480
 
 /* Two spots that are to stay apart. Any solver can use it: if a joint at o turns by the small vector w (the world's
@@ -83,7 +83,7 @@ SPHERECHAIN_API void sc_destroy_response(sc_response* response) SC_NOEXCEPT; /* 
 /* One frame. Sure: where nothing is near and the state is empty, all stays as it is, bit for bit; no joint turns beyond
  * its budget, or away from its animation by more than 8 radians a second; an elbow that is bent does not bend backward;
  * the faults that it finds are not deeper in sum than the animation's (without `ahead`). Not sure: that no fault is
- * left. Those of trunk and legs stay, and tight places have no way out.
+ * left. Faults of trunk and legs stay, and tight places have no way out.
  *
  * SC_OK; SC_NULL, SC_BAD_VALUE (with SC_FIELD_TRANSFORM: a transform is not finite), or a status of the questions: then
  * joints and state are as they were. */
