@@ -87,6 +87,30 @@ std::vector<float> sample(const std::vector<float>& times, const std::vector<flo
   return out;
 }
 
+// A matrix without shear, taken apart.
+spherechain::Transform transform_of(const std::vector<float>& m) {
+  const auto column = [&](std::size_t i) { return spherechain::Vec3{m[4 * i], m[4 * i + 1], m[4 * i + 2]}; };
+  spherechain::Vec3 x = column(0), y = column(1), z = column(2);
+  const auto divide = [](spherechain::Vec3& v, float by) { v = {v.x / by, v.y / by, v.z / by}; };
+  const auto length = [](const spherechain::Vec3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); };
+  const float volume = x.x * (y.y * z.z - y.z * z.y) + x.y * (y.z * z.x - y.x * z.z) + x.z * (y.x * z.y - y.y * z.x);
+  const spherechain::Vec3 scale{std::copysign(length(x), volume), length(y), length(z)};
+  divide(x, scale.x), divide(y, scale.y), divide(z, scale.z);
+  // The largest of a quaternion's entries, and the others from it.
+  std::vector<float> q;
+  if (x.x + y.y + z.z > 0) {
+    q = {y.z - z.y, z.x - x.z, x.y - y.x, 1 + x.x + y.y + z.z};
+  } else if (x.x >= y.y && x.x >= z.z) {
+    q = {1 + x.x - y.y - z.z, y.x + x.y, z.x + x.z, y.z - z.y};
+  } else if (y.y >= z.z) {
+    q = {y.x + x.y, 1 - x.x + y.y - z.z, z.y + y.z, z.x - x.z};
+  } else {
+    q = {z.x + x.z, z.y + y.z, 1 - x.x - y.y + z.z, x.y - y.x};
+  }
+  normalize(q);
+  return {{m[12], m[13], m[14]}, {q[0], q[1], q[2], q[3]}, scale};
+}
+
 tinygltf::Model load(const std::string& path) {
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
@@ -183,19 +207,79 @@ Matrix GltfCharacter::world(const std::vector<Node>& nodes, std::size_t node) co
   return n.parent < 0 ? local : product(world(nodes, at(n.parent)), local);
 }
 
-Palette GltfCharacter::palette(std::size_t clip, double seconds) const {
+std::vector<GltfCharacter::Node> GltfCharacter::nodes_at(std::size_t clip, double seconds) const {
   std::vector<Node> nodes = nodes_;
   for (const Channel& channel : clips_.at(clip).channels) {
     nodes.at(channel.node).*channel.target =
         sample(channel.times, channel.values, channel.interpolation, static_cast<float>(seconds));
   }
-  return palette_of(nodes);
+  return nodes;
 }
+
+Palette GltfCharacter::palette(std::size_t clip, double seconds) const { return palette_of(nodes_at(clip, seconds)); }
 
 Palette GltfCharacter::palette_of(const std::vector<Node>& nodes) const {
   Palette palette;
   for (const Joint& joint : joints_) palette.push_back(product(world(nodes, joint.node), joint.inverse_bind));
   return palette;
+}
+
+std::vector<std::size_t> GltfCharacter::nodes_of_locals() const {
+  std::vector<std::size_t> out;
+  for (const Joint& joint : joints_) out.push_back(joint.node);
+  for (std::size_t node = 0; node < nodes_.size(); ++node) {
+    if (std::find(out.begin(), out.end(), node) == out.end()) out.push_back(node);
+  }
+  return out;
+}
+
+std::vector<std::uint32_t> GltfCharacter::parents() const {
+  const std::vector<std::size_t> nodes = nodes_of_locals();
+  const auto first_of = [&](std::size_t node) {
+    return static_cast<std::uint32_t>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
+  };
+  std::vector<std::uint32_t> out;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const std::uint32_t first = first_of(nodes[i]);
+    const int parent = nodes_[nodes[i]].parent;
+    // A joint of several skins hangs on the first of them.
+    out.push_back(first != i ? first : parent < 0 ? SC_NO_JOINT : first_of(at(parent)));
+  }
+  return out;
+}
+
+std::vector<spherechain::Transform> GltfCharacter::locals(std::size_t clip, double seconds) const {
+  const std::vector<Node> nodes = nodes_at(clip, seconds);
+  std::vector<bool> is_listed(nodes.size());
+  std::vector<spherechain::Transform> out;
+  for (const std::size_t node : nodes_of_locals()) {
+    const Node& n = nodes[node];
+    if (is_listed[node]) {
+      out.push_back({{0, 0, 0}, {0, 0, 0, 1}, {1, 1, 1}});
+    } else if (n.matrix.size() == 16) {
+      out.push_back(transform_of(n.matrix));
+    } else {
+      out.push_back({{n.translation[0], n.translation[1], n.translation[2]},
+                     {n.rotation[0], n.rotation[1], n.rotation[2], n.rotation[3]},
+                     {n.scale[0], n.scale[1], n.scale[2]}});
+    }
+    is_listed[node] = true;
+  }
+  return out;
+}
+
+Palette GltfCharacter::palette(const std::vector<spherechain::Transform>& locals) const {
+  const std::vector<std::size_t> order = nodes_of_locals();
+  std::vector<Node> nodes = nodes_;
+  for (std::size_t i = order.size(); i-- > 0;) {  // of a node that is listed twice, the first counts
+    const spherechain::Transform& local = locals.at(i);
+    Node& node = nodes[order[i]];
+    node.translation = {local.translation.x, local.translation.y, local.translation.z};
+    node.rotation = {std::begin(local.rotation), std::end(local.rotation)};
+    node.scale = {local.scale.x, local.scale.y, local.scale.z};
+    node.matrix.clear();
+  }
+  return palette_of(nodes);
 }
 
 const GltfCharacter::Primitive& GltfCharacter::find(std::size_t mesh, std::size_t primitive) const {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,12 @@ class GltfCharacter {
   // The same where no clip plays. In most files this is the bind pose.
   Palette rest_palette() const { return palette_of(nodes_); }
 
+  // For code that moves joints after the clip did: where each joint is in its parent's space, in the order of joints().
+  // The file's other nodes come after them, for they carry joints, too.
+  std::vector<spherechain::Transform> locals(std::size_t clip, double seconds) const;
+  std::vector<std::uint32_t> parents() const;  // of each of them; SC_NO_JOINT: none
+  Palette palette(const std::vector<spherechain::Transform>& locals) const;
+
   // The vertices of a mesh's primitive, x y z: as the file has them, and in a pose. It is what an engine that skins on
   // the CPU has. Throw std::runtime_error where there is no such primitive.
   const std::vector<float>& file_vertices(std::size_t mesh, std::size_t primitive) const;
@@ -73,7 +80,9 @@ class GltfCharacter {
   };
 
   const Primitive& find(std::size_t mesh, std::size_t primitive) const;
+  std::vector<Node> nodes_at(std::size_t clip, double seconds) const;
   Palette palette_of(const std::vector<Node>& nodes) const;
+  std::vector<std::size_t> nodes_of_locals() const;
   Matrix world(const std::vector<Node>& nodes, std::size_t node) const;
 
   std::vector<Node> nodes_;

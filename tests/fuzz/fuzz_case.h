@@ -137,5 +137,6 @@ void fuzz_contacts(Case& c);
 void fuzz_penetrations(Case& c);
 void fuzz_bodies(Case& c);
 void fuzz_steps(Case& c);
+void fuzz_response(Case& c);
 
 }  // namespace spherechain::test

@@ -23,7 +23,7 @@ constexpr Kind kKinds[] = {
     {"prepare", fuzz_prepare},   {"binding", fuzz_binding},     {"model", fuzz_model},
     {"refit", fuzz_refit},       {"detect", fuzz_detect},       {"crowd", fuzz_crowd},
     {"contacts", fuzz_contacts}, {"bodies", fuzz_bodies},       {"penetrations", fuzz_penetrations},
-    {"steps", fuzz_steps}};
+    {"steps", fuzz_steps},       {"response", fuzz_response}};
 constexpr std::size_t kKindCount = sizeof kKinds / sizeof kKinds[0];
 
 bool read_number(int argc, char** argv, int& i, const char* name, std::uint64_t& number) {

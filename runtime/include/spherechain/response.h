@@ -26,7 +26,7 @@ typedef struct sc_response_def {
 
 /* A character's state, what its response remembers of the frames before, is so many 64-bit words of the caller's.
  * Zeros: nothing. Set it so at first, and where the animation cuts or the character is moved elsewhere. A copy replays
- * the same, on every machine. */
+ * the same, on every machine. Any words are safe to pass; those that make no sense are forgotten. */
 #define SC_RESPONSE_WORDS 480
 
 /* Two spots that are to stay apart. Any solver can use it: if a joint at o turns by the small vector w (the world's

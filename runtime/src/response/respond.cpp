@@ -36,6 +36,17 @@ void store(const Turns& from, std::size_t count, StoredTurns& to) {
   }
 }
 
+// A caller may put any bits into a state's words: where a turn is not finite, nothing is remembered.
+State load_state(const std::uint64_t* words) {
+  State out;
+  std::memcpy(&out, words, sizeof out);
+  const auto are_finite = [](const StoredTurns& turns) {
+    return std::all_of(std::begin(turns), std::end(turns), is_finite);
+  };
+  const bool is_sound = are_finite(out.turns) && std::all_of(std::begin(out.past), std::end(out.past), are_finite);
+  return is_sound ? out : State{};
+}
+
 bool is_zero(const Double3& v) { return dot(v, v) == 0; }
 
 Quaternion turned(const sc_transform& joint, const Double3& turn) {
@@ -216,6 +227,10 @@ Status check(const sc_response& response, const sc_response_frame& frame) {
       frame.ahead_frames > kAheadMost) {
     return refuse(SC_BAD_VALUE, SC_FIELD_QUERY);
   }
+  if (std::any_of(frame.others, frame.others + frame.other_count,
+                  [](const sc_body* body) { return body == nullptr; })) {
+    return refuse(SC_NULL, SC_FIELD_BODIES);
+  }
   const auto are_sound = [&](const sc_transform* joints) {
     return joints == nullptr || std::all_of(joints, joints + response.joints.size, is_sound);
   };
@@ -242,8 +257,7 @@ extern "C" sc_status sc_respond(sc_response* response, uint64_t* state, sc_respo
   frame->remaining = 0;
   frame->rows = own.listed;
   frame->row_count = 0;
-  State memory;
-  std::memcpy(&memory, state, sizeof memory);
+  State memory = load_state(state);
   own.place = frame->place == nullptr ? kIdentity : affine_of(*frame->place);
   const std::size_t count = own.turning_count;
   if (count == 0) {

@@ -2,6 +2,8 @@
 // A response: what it knows of the character before the first frame, what a state keeps, and the memory of one frame.
 #pragma once
 
+#include <cmath>
+
 #include "runtime/src/bodies/body.h"
 #include "runtime/src/response/skeleton.h"
 #include "spherechain/response.h"
@@ -27,6 +29,8 @@ struct KeptRow {
   float allowed;
   float unseen;  // seconds
 };
+
+inline bool is_finite(const float (&v)[3]) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
 // A character's state, as its words keep it.
 struct State {

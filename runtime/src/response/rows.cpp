@@ -182,6 +182,23 @@ void drop_rows(sc_response& response, const sc_response_frame& frame) {
   response.row_count = left;
 }
 
+// The number of parts of a row's other body; 0: there is no such body.
+std::size_t parts_of_other(const sc_response& response, const sc_response_frame& frame, std::size_t body) {
+  if (body == 0) {
+    return response.joint_of_part.size;
+  }
+  return body <= frame.other_count ? asset_of(*frame.others[body - 1]).part_count() : 0;
+}
+
+// Can a row of a state be carried on? The bodies may have changed, and a caller may put any bits into a state.
+bool is_sound(const sc_response& response, const sc_response_frame& frame, const KeptRow& row) {
+  const bool is_of_ground = frame.ground != nullptr && row.body == frame.other_count + 1;
+  return row.part < response.joint_of_part.size &&
+         (is_of_ground || row.other < parts_of_other(response, frame, row.body)) && is_finite(row.at) &&
+         is_finite(row.at_other) && is_finite(row.normal) && std::isfinite(row.allowed) && row.unseen >= 0 &&
+         row.unseen <= kUnseenMost;
+}
+
 }  // namespace
 
 void carry_rows(sc_response& response, const State& state, const sc_response_frame& frame, double seconds) {
@@ -190,10 +207,7 @@ void carry_rows(sc_response& response, const State& state, const sc_response_fra
     Row& row = response.rows[response.row_count];
     row = Row{};
     row.kept = state.rows[i];
-    const bool is_there = row.kept.part < response.joint_of_part.size &&
-                          (row.kept.body > 0 ? row.kept.body <= frame.other_count + (frame.ground != nullptr ? 1 : 0)
-                                             : row.kept.other < response.joint_of_part.size);
-    if (is_there) {
+    if (is_sound(response, frame, row.kept)) {
       row.kept.unseen += static_cast<float>(seconds);
       carry(spaces_of(response, response.world.data, frame, row.kept), response.height, row);
       ++response.row_count;

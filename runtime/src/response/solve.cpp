@@ -210,6 +210,9 @@ void solve_rows(sc_response& response, const Double3* rest, Double3* turns) {
     }
   }
   for (std::size_t t = 0; t < count; ++t) {
+    if (!std::isfinite(dot(change[t], change[t]))) {
+      continue;  // in a pose whose squares are not finite
+    }
     turns[t] = vector_of(product(turn_of(shortened(change[t], kRoundMost)), turn_of(turns[t])));
   }
 }
