@@ -240,7 +240,8 @@ class Step {
     double count = 0, most = 0;
     const auto over_all = [&](const auto& take) {
       for (const Walker* walker : {&room_.a, &b_}) {
-        for (std::size_t bone = 0; walker->start.has_balls && bone < walker->surface.bone_boxes.size; ++bone) {
+        for (std::size_t bone = 0;
+             walker->start.has_balls && walker->end.has_balls && bone < walker->surface.bone_boxes.size; ++bone) {
           const BoneBox& box = walker->surface.bone_boxes[bone];
           if (box.half.x >= 0) {
             take(moved(walker->end.skin.bones, bone, box.center) - moved(walker->start.skin.bones, bone, box.center));
