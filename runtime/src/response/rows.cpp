@@ -18,7 +18,7 @@ constexpr double kBend = 0.035;                        // a skin's radius: it be
 constexpr double kGapMost = 0.008, kSlideMost = 0.05;  // of a row that is kept
 constexpr float kUnseenMost = 0.5F;                    // seconds
 constexpr double kLoosen = 0.15;                       // heights a second, by which a row that is not found gives way
-constexpr double kForget = 0.07;                        // seconds, in which a larger depth is allowed again
+constexpr double kForget = 0.07;                       // seconds, in which a larger depth is allowed again
 constexpr double kAnyDepth = 10;                       // where pieces slide in each other as they like
 
 constexpr Affine kWorld{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
