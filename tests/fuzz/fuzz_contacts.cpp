@@ -136,7 +136,10 @@ Ways ways_of(Case& c, SkinContactJob& job, Filter& filter, Target& other) {
   Ways ways = {[&] { job.skin_table = nullptr, c.spoil(SC_NULL, SC_FIELD_SKIN_TABLE); },
                [&] { put_askew(c, job.skin_table), c.spoil(SC_MISALIGNED, SC_FIELD_SKIN_TABLE); },
                [&] {
-                 const_cast<std::uint64_t*>(job.skin_table)[c.random.below(2)] ^= 1;
+                 // Another way may have moved it off its alignment, or taken it.
+                 const std::size_t byte = sizeof(std::uint64_t) * c.random.below(2);
+                 auto* const bytes = reinterpret_cast<unsigned char*>(const_cast<std::uint64_t*>(job.skin_table));
+                 if (bytes != nullptr) bytes[byte] ^= 1;
                  c.spoil(SC_BAD_VALUE, SC_FIELD_SKIN_TABLE);
                },
                [&] { job.scratch = nullptr, c.spoil(SC_NULL, SC_FIELD_SCRATCH); },
