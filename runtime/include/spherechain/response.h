@@ -80,10 +80,11 @@ SPHERECHAIN_API sc_status sc_create_response(sc_body* body, const sc_response_de
                                              sc_response** response) SC_NOEXCEPT;
 SPHERECHAIN_API void sc_destroy_response(sc_response* response) SC_NOEXCEPT; /* null is fine */
 
-/* One frame. Sure: where nothing is near and the state is empty, all stays as it is, bit for bit; no joint turns beyond
- * its budget, or away from its animation by more than 8 radians a second; an elbow that is bent does not bend backward;
- * the faults that it finds are not deeper in sum than the animation's (without `ahead`). Not sure: that no fault is
- * left. Faults of trunk and legs stay, and tight places have no way out.
+/* One frame. Where nothing is near and the state is empty, all stays as it is, bit for bit. No joint turns beyond its
+ * budget, or away from its animation by more than 8 radians a second; the first frame of a state knows its budget
+ * alone. A bent elbow does not bend backward. The faults that are found are not deeper in sum than the animation's;
+ * with `ahead` this is not checked. Faults can be left: the response does not turn trunk and legs, and tight places
+ * have no way out.
  *
  * SC_OK; SC_NULL, SC_BAD_VALUE (with SC_FIELD_TRANSFORM: a transform is not finite), or a status of the questions: then
  * joints and state are as they were. */

@@ -20,19 +20,13 @@ constexpr double kFastest = 8;     // radians a second
 constexpr double kNothing = 1e-4;  // a smaller turn ends
 constexpr double kLacks = 0.0006;  // a share of the height: what rows may lack without another round
 constexpr std::uint32_t kRounds = 3, kFirstRounds = 2;
-constexpr Affine kIdentity{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
 using Turns = Double3[kTurningMost];
 using StoredTurns = float[kTurningMost][3];
 
-Double3 load(const float (&from)[3]) { return {double{from[0]}, double{from[1]}, double{from[2]}}; }
-
 void store(const Turns& from, std::size_t count, StoredTurns& to) {
   for (std::size_t t = 0; t < count; ++t) {
-    const Vec3 turn = to_float(from[t]);
-    to[t][0] = turn.x;
-    to[t][1] = turn.y;
-    to[t][2] = turn.z;
+    store(from[t], to[t]);
   }
 }
 
@@ -77,12 +71,9 @@ Status pose(sc_response& response, const sc_response_frame& frame, const sc_tran
   const std::size_t bones = response.bones.size / 12;
   for (std::size_t b = 0; b < bones; ++b) {
     const std::uint32_t joint = model.joint_of_bone == nullptr ? static_cast<std::uint32_t>(b) : model.joint_of_bone[b];
-    const float* const bind = sc_asset_bone(&model.asset, b).inverse_bind;
-    Affine inverse_bind;
-    for (std::size_t i = 0; i < 12; ++i) {
-      inverse_bind.m[i / 4][i % 4] = double{bind[i]};
-    }
-    const Affine bone = joint == SC_NO_JOINT ? response.place : product(response.world[joint], inverse_bind);
+    const Affine bone = joint == SC_NO_JOINT ? response.place
+                                             : product(response.world[joint],
+                                                       affine_of_rows(sc_asset_bone(&model.asset, b).inverse_bind));
     for (std::size_t i = 0; i < 12; ++i) {
       response.bones[12 * b + i] = static_cast<float>(bone.m[i / 4][i % 4]);
     }
@@ -258,7 +249,7 @@ extern "C" sc_status sc_respond(sc_response* response, uint64_t* state, sc_respo
   frame->rows = own.listed;
   frame->row_count = 0;
   State memory = load_state(state);
-  own.place = frame->place == nullptr ? kIdentity : affine_of(*frame->place);
+  own.place = frame->place == nullptr ? kUnmoved : affine_of(*frame->place);
   const std::size_t count = own.turning_count;
   if (count == 0) {
     return done();

@@ -21,8 +21,6 @@ constexpr double kLoosen = 0.15;                       // heights a second, by w
 constexpr double kForget = 0.07;                       // seconds, in which a larger depth is allowed again
 constexpr double kAnyDepth = 10;                       // where pieces slide in each other as they like
 
-constexpr Affine kWorld{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-
 // The spaces of a row's two spots, in a pose of the joints.
 struct Spaces {
   Affine part, other;
@@ -32,33 +30,22 @@ Affine space_of_other(const sc_response& response, const Affine* world, const sc
                       const KeptRow& row) {
   if (row.body == 0) {
     const std::uint32_t joint = response.joint_of_part[row.other];
-    return joint == SC_NO_JOINT ? kWorld : world[joint];
+    return joint == SC_NO_JOINT ? kUnmoved : world[joint];
   }
   if (row.body > frame.other_count) {
-    return kWorld;  // the ground
+    return kUnmoved;  // the ground
   }
   const sc_body& other = *frame.others[row.body - 1];
   const std::int32_t bone = asset_of(other).part(row.other).bone;
-  Affine out = kWorld;
-  for (std::size_t i = 0; i < 12 && bone >= 0 && other.now.pose.bones != nullptr; ++i) {
-    out.m[i / 4][i % 4] = double{other.now.bones[12 * static_cast<std::size_t>(bone) + i]};
-  }
-  return out;
+  return bone < 0 || other.now.pose.bones == nullptr
+             ? kUnmoved
+             : affine_of_rows(other.now.bones + 12 * static_cast<std::size_t>(bone));
 }
 
 Spaces spaces_of(const sc_response& response, const Affine* world, const sc_response_frame& frame, const KeptRow& row) {
   const std::uint32_t joint = response.joint_of_part[row.part];
-  return {joint == SC_NO_JOINT ? kWorld : world[joint], space_of_other(response, world, frame, row)};
+  return {joint == SC_NO_JOINT ? kUnmoved : world[joint], space_of_other(response, world, frame, row)};
 }
-
-void store(const Double3& from, float (&to)[3]) {
-  const Vec3 rounded = to_float(from);
-  to[0] = rounded.x;
-  to[1] = rounded.y;
-  to[2] = rounded.z;
-}
-
-Double3 load(const float (&from)[3]) { return {double{from[0]}, double{from[1]}, double{from[2]}}; }
 
 // Puts a kept row into a pose of the joints.
 void carry(const Spaces& spaces, double height, Row& row) {

@@ -88,25 +88,12 @@ bool add_all_turning(sc_response& response, const sc_response_def& def) {
   return true;
 }
 
-// A direction in these axes.
-Double3 unit_into(const Affine& axes, const Double3& v) {
-  const auto& m = axes.m;
-  Double3 out{m[0][0] * v.x + m[1][0] * v.y + m[2][0] * v.z, m[0][1] * v.x + m[1][1] * v.y + m[2][1] * v.z,
-              m[0][2] * v.x + m[1][2] * v.y + m[2][2] * v.z};
-  return normalize(out) ? out : Double3{0, 0, 0};
-}
-
 // A joint at rest. False where no bone says where it is.
 bool at_rest(const sc_model& model, std::uint32_t joint, Affine& out) {
   const std::size_t bones = view_of(model.asset).bone_count();
   for (std::size_t b = 0; b < bones; ++b) {
     if ((model.joint_of_bone == nullptr ? b : model.joint_of_bone[b]) == joint) {
-      const float* const bind = sc_asset_bone(&model.asset, b).inverse_bind;
-      Affine inverse_bind;
-      for (std::size_t i = 0; i < 12; ++i) {
-        inverse_bind.m[i / 4][i % 4] = double{bind[i]};
-      }
-      return invert(inverse_bind, out);
+      return invert(affine_of_rows(sc_asset_bone(&model.asset, b).inverse_bind), out);
     }
   }
   return false;
@@ -122,13 +109,14 @@ Double3 hinge_at_rest(const sc_response& response, const TurningJoint& elbow) {
       !at_rest(model, elbow.below, below) || !at_rest(model, parent, axes)) {
     return {0, 0, 0};
   }
-  const auto place_of = [](const Affine& joint) { return Double3{joint.m[0][3], joint.m[1][3], joint.m[2][3]}; };
   Double3 upper = place_of(own) - place_of(above), lower = place_of(below) - place_of(own);
   if (!normalize(upper) || !normalize(lower)) {
     return {0, 0, 0};
   }
-  const Double3 across = cross(upper, lower);
-  return length(across) > kStraight ? unit_into(axes_of(axes), across) : Double3{0, 0, 0};
+  Double3 across = cross(upper, lower);
+  const double sine = length(across);
+  across = into(axes_of(axes), across);
+  return sine > kStraight && normalize(across) ? across : Double3{0, 0, 0};
 }
 
 // The first joint below another; SC_NO_JOINT: there is none.

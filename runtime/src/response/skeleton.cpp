@@ -63,6 +63,29 @@ Affine axes_of(const Affine& of) {
   return {{{x.x, y.x, up.x, 0}, {x.y, y.y, up.y, 0}, {x.z, y.z, up.z, 0}}};
 }
 
+Double3 into(const Affine& axes, const Double3& v) {
+  const auto& m = axes.m;
+  return {m[0][0] * v.x + m[1][0] * v.y + m[2][0] * v.z, m[0][1] * v.x + m[1][1] * v.y + m[2][1] * v.z,
+          m[0][2] * v.x + m[1][2] * v.y + m[2][2] * v.z};
+}
+
+Affine affine_of_rows(const float* rows) {
+  Affine out;
+  for (std::size_t i = 0; i < 12; ++i) {
+    out.m[i / 4][i % 4] = double{rows[i]};
+  }
+  return out;
+}
+
+Double3 load(const float (&from)[3]) { return {double{from[0]}, double{from[1]}, double{from[2]}}; }
+
+void store(const Double3& from, float (&to)[3]) {
+  const Vec3 rounded = to_float(from);
+  to[0] = rounded.x;
+  to[1] = rounded.y;
+  to[2] = rounded.z;
+}
+
 bool sort_joints(Span<const std::uint32_t> parents, Span<std::uint32_t> order) {
   std::size_t placed = 0;
   const auto place_children = [&](std::uint32_t parent) {

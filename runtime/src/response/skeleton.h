@@ -22,6 +22,19 @@ bool invert(const Affine& of, Affine& out);
 // The axes of a matrix without its scale: orthonormal, mirrored where it mirrors.
 Affine axes_of(const Affine& of);
 
+// From the world's axes to these, which are orthonormal.
+Double3 into(const Affine& axes, const Double3& v);
+
+inline Double3 place_of(const Affine& joint) { return {joint.m[0][3], joint.m[1][3], joint.m[2][3]}; }
+// Three rows of four.
+Affine affine_of_rows(const float* rows);
+
+// A vector as a character's state keeps it.
+Double3 load(const float (&from)[3]);
+void store(const Double3& from, float (&to)[3]);
+
+inline constexpr Affine kUnmoved{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+
 struct Skeleton {
   Span<const std::uint32_t> parents;  // SC_NO_JOINT: none
   Span<const std::uint32_t> order;    // parents come first

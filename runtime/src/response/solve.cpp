@@ -13,15 +13,6 @@ constexpr double kOffHinge = 0.25;   // of an elbow's mobility, about other axes
 constexpr double kStraight = 0.1;    // the sine of a bend below which an elbow's axis is taken from the rest pose
 constexpr double kKeepsWrist = 100;  // how dear it is to move the wrist by a metre of a human, against a radian
 
-Double3 place_of(const Affine& joint) { return {joint.m[0][3], joint.m[1][3], joint.m[2][3]}; }
-
-// From the world's axes, and to them.
-Double3 into(const Affine& axes, const Double3& v) {
-  const auto& m = axes.m;
-  return {m[0][0] * v.x + m[1][0] * v.y + m[2][0] * v.z, m[0][1] * v.x + m[1][1] * v.y + m[2][1] * v.z,
-          m[0][2] * v.x + m[1][2] * v.y + m[2][2] * v.z};
-}
-
 // The axes that a joint's turns are in: its parent's. Turns go the other way in mirrored ones.
 Affine turning_axes(const sc_response& response, const Affine* world, std::size_t turning) {
   const std::uint32_t parent = response.parents[response.turning[turning].joint];
