@@ -4,6 +4,7 @@
 #include <string>
 
 #include "baker/layers/covered.h"
+#include "baker/layers/pieces.h"
 #include "baker/layers/stack.h"
 #include "baker/layers/windings.h"
 #include "baker/mesh/error.h"
@@ -46,7 +47,7 @@ baker::Layers::Pairs find_rest_contacts(const Model& model, const std::vector<fl
 
 }  // namespace
 
-baker::Layers baker::find_layers(const std::vector<std::uint8_t>& draft, const std::vector<float>& rest) {
+baker::Layers baker::find_layers(const std::vector<std::uint8_t>& draft, const Character& character) {
   Layers out;
   const Model model(draft.data(), draft.size(), nullptr, 0, SC_LAYOUT_UNSET);
   if (!model) return out;  // the next who opens it says what is wrong
@@ -54,7 +55,7 @@ baker::Layers baker::find_layers(const std::vector<std::uint8_t>& draft, const s
   if (asset.skin().sizes.triangles == 0) return out;
   Surface surface;
   read_skin_table(asset, model.handle()->skin_table, surface);
-  out.rest_contacts = find_rest_contacts(model, rest);
+  out.rest_contacts = find_rest_contacts(model, pack(character.source_positions));
   out.of_triangle.assign(surface.triangles.size, 0);
   surface.layers = {out.of_triangle.data(), out.of_triangle.size()};
   find_facings(surface);
@@ -68,6 +69,8 @@ baker::Layers baker::find_layers(const std::vector<std::uint8_t>& draft, const s
     b = surface.place_of_source[b];
   }
   Stack stack = find_stack(asset, surface, crossing);
+  out.pieces = find_pieces(surface, character);
+  out.covers = std::move(stack.covers);
   out.is_buried = std::move(stack.is_buried);
   out.pairs = std::move(stack.pairs);
   Windings windings = find_windings(asset, surface);

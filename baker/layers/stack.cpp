@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "baker/layers/pieces.h"
 #include "runtime/src/base/double3.h"
 
 namespace spherechain {
@@ -32,7 +33,7 @@ struct Hit {
 class Stacker {
  public:
   Stacker(const AssetView& asset, const Surface& surface)
-      : asset_(asset), surface_(surface), height_(double{asset.info().height}) {
+      : surface_(surface), height_(double{asset.info().height}), pieces_(baker::number_pieces(surface)) {
     for (std::uint32_t c = 0; c < surface.clusters.size; ++c) {
       const BoxLanes& lanes = surface.boxes[c / kClusterLanes];
       const std::size_t k = c % kClusterLanes;
@@ -43,7 +44,11 @@ class Stacker {
 
   baker::Stack run(const baker::Layers::Pairs& rest_contacts) {
     baker::Stack out;
-    for (std::uint32_t c = 0; c < surface_.clusters.size; ++c) out.is_buried.push_back(look_from(c) ? 1 : 0);
+    for (std::uint32_t c = 0; c < surface_.clusters.size; ++c) {
+      std::map<std::uint32_t, std::vector<double>> over;
+      out.is_buried.push_back(look_from(c, over) ? 1 : 0);
+      out.covers.push_back(cover_of(over));
+    }
     for (const auto& [a, b] : rest_contacts) add_over(cluster_of(surface_, a), cluster_of(surface_, b));
     for (std::uint32_t a = 0; a < surface_.clusters.size; ++a) {
       for (std::uint32_t b = a + 1; b < surface_.clusters.size; ++b) {
@@ -62,7 +67,7 @@ class Stacker {
   };
 
   std::uint32_t piece_of(std::uint32_t cluster) const {
-    return surface_.pieces[surface_.cluster_vertices[surface_.clusters[cluster].first_vertex]];
+    return pieces_[surface_.cluster_vertices[surface_.clusters[cluster].first_vertex]];
   }
   Double3 position(std::uint32_t vertex) const {
     const float* const at = surface_.rest_positions.data + 3 * std::size_t{vertex};
@@ -144,8 +149,18 @@ class Stacker {
     return shared;
   }
 
+  // `over`: distances by piece.
+  static baker::Layers::Cover cover_of(std::map<std::uint32_t, std::vector<double>>& over) {
+    const auto most = std::ranges::max_element(over, {}, [](const auto& entry) { return entry.second.size(); });
+    if (most == over.end()) return {};
+    std::vector<double>& distances = most->second;
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    return {most->first + 1, static_cast<float>(*middle)};
+  }
+
   // Notes what lies over a cluster. Does it bury it?
-  bool look_from(std::uint32_t cluster) {
+  bool look_from(std::uint32_t cluster, std::map<std::uint32_t, std::vector<double>>& over) {
     const Cluster& of = surface_.clusters[cluster];
     bool is_buried = true;
     for (std::uint32_t t = of.first_triangle; t < of.first_triangle + of.triangle_count; ++t) {
@@ -159,7 +174,10 @@ class Stacker {
       const double shared = shared_weight(cluster, t, hit);
       is_buried = is_buried && shared >= (hit.distance <= kTight * height_ ? kMoveAlike : kMoveAsOne);
       const bool is_near = hit.distance <= kLoose * height_ || shared >= kMoveAsOne;
-      if (is_near && (hit.from_behind || is_covered(surface_, t))) add_over(cluster, hit.cluster);
+      if (is_near && (hit.from_behind || is_covered(surface_, t))) {
+        add_over(cluster, hit.cluster);
+        over[piece_of(hit.cluster)].push_back(hit.distance);
+      }
     }
     return is_buried;
   }
@@ -207,9 +225,9 @@ class Stacker {
     return false;
   }
 
-  const AssetView& asset_;
   const Surface& surface_;
   double height_;
+  std::vector<std::uint32_t> pieces_;                                          // of each vertex
   std::vector<Box> boxes_;                                                     // of the clusters
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Over>> over_;  // by pieces, the lower first
 };

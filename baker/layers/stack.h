@@ -10,6 +10,7 @@ namespace spherechain::baker {
 
 // Clusters and what lies over them.
 struct Stack {
+  std::vector<Layers::Cover> covers;
   std::vector<char> is_buried;
   Layers::Pairs pairs;
 };

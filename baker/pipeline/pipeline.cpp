@@ -89,7 +89,7 @@ void run_after_fit(Bake& out, const Progress& progress) {
     return serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, out.bones,
                       out.moments, out.body_parts, out.clusters, out.layers, to_json(settings)});
   };
-  stage(out, progress, "layers", [&] { out.layers = find_layers(write(), pack(out.character.source_positions)); });
+  stage(out, progress, "layers", [&] { out.layers = find_layers(write(), out.character); });
   if (settings.bind.rule != RefitRule::kPaper && !settings.import.prop) {
     stage(out, progress, "calibrate", [&] {
       const std::vector<std::uint8_t> draft = write();  // for the runtime, which moves the spheres

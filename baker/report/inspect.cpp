@@ -6,6 +6,7 @@
 
 #include "baker/report/json_text.h"
 #include "baker/report/parts.h"
+#include "baker/report/piece_rows.h"
 #include "baker/report/report.h"
 
 namespace spherechain::baker {
@@ -183,6 +184,7 @@ std::string inspect_json(const OpenAsset& asset) {
         {"rest_contacts", asset.surface().rest_contacts.size},
         {"buried_clusters", count_buried(asset.surface())},
         {"layer_pairs", count_layers(asset.surface())},
+        {"pieces", pieces_json(piece_rows(asset))},
         {"bytes", bytes_of(asset->skin())}}},
       {"fit",
        {{"phi1", to_json(fit.phi1)}, {"phi1_adjusted", to_json(fit.phi1_adjusted)}, {"phi2", to_json(fit.phi2)}}}};
@@ -216,6 +218,7 @@ std::string inspect_text(const OpenAsset& asset) {
                        spheres_in_region(asset, r));
   }
   out += parts_text(part_rows(asset));
+  out += pieces_text(piece_rows(asset));
   for (std::size_t c = 0; c < asset->chain_count(); ++c) {
     const ChainView chain = asset->chain(c);
     out += fmt::format("{}{:<8}", c == 0 ? "\n" : "", chain.name);

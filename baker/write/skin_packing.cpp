@@ -260,6 +260,21 @@ flatbuffers::Offset<schema::Skin> create_skin(flatbuffers::FlatBufferBuilder& bu
   const auto bounds_morph_counts_at = builder.CreateVector(groups.morph_counts);
   const auto bounds_morph_targets_at = builder.CreateVector(groups.morph_targets);
   const auto bounds_morphs_at = aligned_vector(builder, groups.morphs);
+  std::vector<flatbuffers::Offset<schema::Piece>> pieces;
+  for (const SkinPiece& piece : layers.pieces) {
+    pieces.push_back(
+        schema::CreatePiece(builder, builder.CreateSharedString(piece.name), static_cast<float>(piece.border)));
+  }
+  StreamWriter covers;
+  std::vector<float> cover_distances;
+  for (std::size_t c = 0; c < clusters.clusters.size(); ++c) {
+    const Layers::Cover cover = layers.covers.empty() ? Layers::Cover{} : layers.covers[c];
+    covers.put(cover.piece);
+    cover_distances.push_back(cover.distance);
+  }
+  const auto pieces_at = builder.CreateVector(pieces);
+  const auto covers_at = bytes(covers);
+  const auto cover_distances_at = builder.CreateVector(cover_distances);
   const auto contacts_at = bytes(stream_of(layers.rest_contacts)), layer_pairs_at = bytes(stream_of(layers.pairs));
   const auto layers_at = builder.CreateVector(runs.layers.values);
   const auto layer_ends_at = bytes(runs.layers.ends);
@@ -269,12 +284,13 @@ flatbuffers::Offset<schema::Skin> create_skin(flatbuffers::FlatBufferBuilder& bu
   const auto hulls_at = builder.CreateVectorOfStructs(hulls.hulls);
   const auto hull_bones_at = builder.CreateVectorOfStructs(hulls.bones);
   const auto hull_points_at = bytes(hulls.points);
-  return schema::CreateSkin(
-      builder, static_cast<std::uint32_t>(clusters.vertices.size()), triangles_at, corners_at, parts_at, part_ends_at,
-      clusters_at, cluster_vertices_at, cluster_bones_at, sources_at, welds_at, positions_at, counts_at, bones_at,
-      weights_at, morph_counts_at, morphs_at, boxes_at, term_counts_at, term_bones_at, terms_at, bounds_morph_counts_at,
-      bounds_morph_targets_at, bounds_morphs_at, contacts_at, layer_pairs_at, layers_at, layer_ends_at, windings_at,
-      core_triangles_at, core_windings_at, hulls_at, hull_bones_at, hull_points_at);
+  return schema::CreateSkin(builder, static_cast<std::uint32_t>(clusters.vertices.size()), triangles_at, corners_at,
+                            parts_at, part_ends_at, clusters_at, cluster_vertices_at, cluster_bones_at, sources_at,
+                            welds_at, positions_at, counts_at, bones_at, weights_at, morph_counts_at, morphs_at,
+                            boxes_at, term_counts_at, term_bones_at, terms_at, bounds_morph_counts_at,
+                            bounds_morph_targets_at, bounds_morphs_at, pieces_at, covers_at, cover_distances_at,
+                            contacts_at, layer_pairs_at, layers_at, layer_ends_at, windings_at, core_triangles_at,
+                            core_windings_at, hulls_at, hull_bones_at, hull_points_at);
 }
 
 }  // namespace spherechain::baker

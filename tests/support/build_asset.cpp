@@ -141,6 +141,11 @@ class Builder {
     const auto bounds_morph_counts = fb_.CreateVector(in.bounds_morph_counts);
     const auto bounds_morph_targets = fb_.CreateVector(in.bounds_morph_targets);
     const auto bounds_morphs = structs<schema::BallLanes>(fb_, in.bounds_morphs);
+    const auto pieces = tables(in.pieces, [&](const auto& piece) {
+      return schema::CreatePiece(fb_, fb_.CreateString(piece.first), piece.second);
+    });
+    const auto covers = stream(in.covers);
+    const auto cover_distances = fb_.CreateVector(in.cover_distances);
     const auto layer_pairs = stream(in.layer_pairs), layer_run_ends = stream(in.layer_run_ends);
     const auto layer_runs = fb_.CreateVector(in.layer_runs);
     // Skins without triangles have these, too.
@@ -156,7 +161,7 @@ class Builder {
     return schema::CreateSkin(
         fb_, in.vertex_count, triangles, corners, part_runs, part_run_ends, clusters, cluster_vertices, cluster_bones,
         sources, welds, positions, influence_counts, influence_bones, weights, morph_counts, morphs, boxes, term_counts,
-        term_bones, terms, bounds_morph_counts, bounds_morph_targets, bounds_morphs, rest_contacts, layer_pairs,
+        term_bones, terms, bounds_morph_counts, bounds_morph_targets, bounds_morphs, pieces, covers, cover_distances, rest_contacts, layer_pairs,
         layer_runs, layer_run_ends, windings, core_triangles, core_windings, hulls, hull_bones, hull_points);
   }
 

@@ -82,6 +82,9 @@ struct SkinParts {
   std::vector<BoundsTerm> bounds_terms;
   std::vector<std::uint32_t> bounds_morph_counts, bounds_morph_targets;  // no streams
   std::vector<BallLanes> bounds_morphs;
+  std::vector<std::pair<std::string, float>> pieces;  // names and borders
+  Numbers covers;
+  std::vector<float> cover_distances;
   Numbers rest_contacts, layer_pairs;
   std::vector<std::uint8_t> layer_runs;
   Numbers layer_run_ends;

@@ -149,6 +149,9 @@ class Packer {
         out_.layer_pairs.insert(out_.layer_pairs.end(), {a, b});
       }
     }
+    out_.pieces = {{"band", 2.0F}, {"cloth", 0.0F}};
+    for (std::uint32_t c = 0; c < out_.clusters.size(); ++c) out_.covers.push_back(c % 3);
+    out_.cover_distances.assign(out_.clusters.size(), 0.25F);
     out_.layer_runs = {0};
     out_.layer_run_ends = {static_cast<std::uint32_t>(out_.triangles.size())};
     out_.windings.assign(3 * tiny_.parts.spheres.size(), 0);

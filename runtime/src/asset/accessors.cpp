@@ -71,6 +71,8 @@ SkinData skin_of(const schema::Skin& stored) {
   skin.windings = entries_of<std::int8_t>(stored.windings());
   skin.core_triangles = entries_of<std::uint8_t>(stored.core_triangles());
   skin.core_windings = entries_of<std::int8_t>(stored.core_windings());
+  skin.covers = entries_of<std::uint8_t>(stored.covers());
+  skin.cover_distances = entries_of<float>(stored.cover_distances());
   skin.hull_points = entries_of<std::uint8_t>(stored.hull_points());
   skin.part_runs = entries_of<std::uint8_t>(stored.part_runs());
   skin.part_run_ends = entries_of<std::uint8_t>(stored.part_run_ends());
@@ -183,6 +185,13 @@ BoneView AssetView::bone(std::size_t i) const noexcept {
 }
 
 const char* AssetView::morph_name(std::size_t i) const noexcept { return at(*root_->morphs(), i)->c_str(); }
+
+std::size_t AssetView::piece_count() const noexcept { return root_->skin()->pieces()->size(); }
+
+PieceView AssetView::piece(std::size_t i) const noexcept {
+  const schema::Piece& piece = *at(*root_->skin()->pieces(), i);
+  return {piece.name()->c_str(), piece.border()};
+}
 
 }  // namespace spherechain
 

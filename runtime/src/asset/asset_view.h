@@ -18,7 +18,7 @@ namespace schema {
 struct Asset;
 }
 
-inline constexpr std::uint32_t kFormatVersion = 6;
+inline constexpr std::uint32_t kFormatVersion = 7;
 inline constexpr std::uint32_t kMaxSphereCount = 65535, kMaxPartCount = 255;
 
 enum class RefitRule : std::uint8_t { kPaper = 0, kMoments = 1 };
@@ -71,6 +71,11 @@ struct BoneView {
   bool is_rest;
 };
 
+struct PieceView {
+  const char* name;
+  float border;
+};
+
 struct FitError {
   float mean_abs_f, max_abs_f;
 };
@@ -109,6 +114,8 @@ class AssetView {
   BoneView bone(std::size_t i) const noexcept;
   std::size_t morph_count() const noexcept { return morph_count_; }
   const char* morph_name(std::size_t i) const noexcept;
+  std::size_t piece_count() const noexcept;  // of the skin; 0 in a draft
+  PieceView piece(std::size_t i) const noexcept;
   RefitRule refit_rule() const noexcept { return refit_rule_; }
   const MomentTables& moment_tables() const noexcept { return moment_tables_; }  // empty under kPaper
   const SkinData& skin() const noexcept { return skin_; }

@@ -33,7 +33,7 @@ class SkinChecker {
 
   bool run() {
     return check_vertices() && check_influences() && check_morphs() && check_clusters() && check_parts() &&
-           check_bounds() && check_hulls() && check_layers() && check_windings() && check_sizes();
+           check_bounds() && check_hulls() && check_pieces() && check_layers() && check_windings() && check_sizes();
   }
 
  private:
@@ -320,6 +320,21 @@ class SkinChecker {
     }
     return message_.has_size("skin.hull_bones", skin_.hull_bones.size, sizes_.hull_bones, "that the hulls have") &&
            check_stream(skin_.hull_points, sizes_.hull_points, sizes_.vertices, "skin.hull_points");
+  }
+
+  bool check_pieces() {
+    for (std::size_t i = 0; i < asset_.piece_count(); ++i) {
+      if (!is_at_least_0(asset_.piece(i).border)) {
+        return message_.wrong_at("skin.pieces", i, "its border is not finite, or below 0");
+      }
+    }
+    for (std::size_t c = 0; c < skin_.cover_distances.size; ++c) {
+      if (!is_at_least_0(skin_.cover_distances[c])) {
+        return message_.wrong_at("skin.cover_distances", c, "not finite, or below 0");
+      }
+    }
+    return message_.has_size("skin.cover_distances", skin_.cover_distances.size, sizes_.clusters, "clusters") &&
+           check_stream(skin_.covers, sizes_.clusters, asset_.piece_count() + 1, "skin.covers");
   }
 
   bool check_layers() {

@@ -68,12 +68,12 @@ struct SkinData {
   SkinSizes sizes;
   Span<const std::uint8_t> triangles, cluster_vertices, cluster_bones, sources, welds;  // streams
   Span<const std::uint8_t> influence_bones, rest_contacts, hull_points;                 // likewise
-  Span<const std::uint8_t> part_run_ends, layer_pairs, layer_run_ends, core_triangles;  // likewise
+  Span<const std::uint8_t> part_run_ends, layer_pairs, layer_run_ends, core_triangles, covers;  // likewise
   Span<const std::uint8_t> part_runs, layer_runs, corners, influence_counts;
   Span<const std::int8_t> windings, core_windings;
   Span<const std::uint16_t> morph_counts;
   Span<const PackedCluster> clusters;
-  Span<const float> positions, influence_weights;
+  Span<const float> positions, influence_weights, cover_distances;
   Span<const MorphDelta> morphs;
   Span<const BoxLanes> boxes;
   Span<const std::uint32_t> bounds_term_counts, bounds_term_bones, bounds_morph_counts, bounds_morph_targets;

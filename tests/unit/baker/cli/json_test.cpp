@@ -33,7 +33,7 @@ TEST_CASE("inspect --json has the contract's fields and agrees with itself") {
   const Run inspect = run(fmt::format("inspect {} --json", baked_files().asset.string()));
   REQUIRE(inspect.code == 0);
   const json asset = json::parse(inspect.out);
-  CHECK(asset["format_version"] == 6);
+  CHECK(asset["format_version"] == 7);
   CHECK(asset["writer"].get<std::string>().rfind("spherechain ", 0) == 0);
   CHECK(asset["source"]["file"] == "human.zae");
   CHECK(asset["source"]["sha256"].get<std::string>().size() == 64);
@@ -80,6 +80,7 @@ TEST_CASE("inspect --json has the contract's fields and agrees with itself") {
   CHECK(text.find("refit    moments\n") != std::string::npos);
   CHECK(text.find("\nmoments  ") != std::string::npos);
   CHECK(text.find("\npart ") != std::string::npos);
+  CHECK(text.find("\npiece ") != std::string::npos);
   CHECK(text.find("zeta5") != std::string::npos);
 }
 

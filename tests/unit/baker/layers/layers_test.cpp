@@ -2,6 +2,10 @@
 // A trunk, a coat around it without pockets, and a hand.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <numbers>
+
+#include "baker/report/piece_rows.h"
 #include "two_shapes.h"
 
 using namespace spherechain::baker;
@@ -34,6 +38,22 @@ const TwoShapes& dressed() {
 }
 
 }  // namespace
+
+TEST_CASE("an asset knows the pieces of its skin: their hems, and how far the one is over the other at rest") {
+  const OpenAsset& asset = dressed().asset();
+  REQUIRE(asset->piece_count() == 2);
+  const auto [closed, open] = std::minmax({asset->piece(0).border, asset->piece(1).border});
+  CHECK(closed == 0);
+  CHECK(open == doctest::Approx(2 * 2 * std::numbers::pi * kCoat).epsilon(0.01));
+  const std::vector<PieceRow> rows = piece_rows(asset);  // one: the mesh has no name
+  REQUIRE(rows.size() == 1);
+  REQUIRE(rows[0].covers.size() == 1);
+  const PieceRow::Cover& cover = rows[0].covers[0];
+  CHECK(cover.distance_mm == doctest::Approx(1000 * (kCoat - kTrunk)).epsilon(0.1));
+  CHECK(!cover.crosses);
+  const double coat = 24 * kCoat, trunk = 40 * kTrunk;  // areas of the two, without the trunk's ends
+  CHECK(cover.area == doctest::Approx(24 * kTrunk / (coat + trunk)).epsilon(0.2));
+}
 
 TEST_CASE("a coat that slides on a trunk meets it only where layers are asked for") {
   const auto slid = shifted(1.2, 0.5, 0);

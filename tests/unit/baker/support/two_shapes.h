@@ -41,6 +41,8 @@ class TwoShapes {
   // out.
   std::size_t count_inside(const Place& place, std::uint64_t ignored, std::uint64_t ignored_of_other) const;
 
+  const spherechain::baker::OpenAsset& asset() const { return asset_; }
+
  private:
   std::vector<float> posed(const Place& place, const Place& both) const;
 
