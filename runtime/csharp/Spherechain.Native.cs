@@ -393,7 +393,7 @@ namespace Spherechain
         public Vec3 Normal;
         /// <summary>their distance along `normal`; negative: so deep. The pose's units, as `allowed` is</summary>
         public float Gap;
-        /// <summary>how deep they may be before it is a fault</summary>
+        /// <summary>how deep they may be before it is a fault; 0 of parts that have not met</summary>
         public float Allowed;
     }
 
@@ -406,7 +406,7 @@ namespace Spherechain
 #endif
         const CallingConvention Cdecl = CallingConvention.Cdecl;
 
-        public const uint AbiVersion = 16;
+        public const uint AbiVersion = 17;
         public const uint AssetAlignment = 8;
         public const uint Floor = 0xFFFFFFFFu;
         public const uint NoJoint = 0xFFFFFFFFu;
@@ -655,6 +655,7 @@ namespace Spherechain
             public float* Mobility;
             /// <summary>the most that each joint is turned, in radians, up to 2; null: 1.05, 60 degrees</summary>
             public float* Budget;
+            public Vec3* Hinges;
             public ulong* PartPairs;
             /// <summary>null: sc_default_rule()</summary>
             public Rule* Rule;
@@ -672,7 +673,7 @@ namespace Spherechain
             public UIntPtr MorphWeightCount;
             /// <summary>since the last frame, up to 1</summary>
             public float Seconds;
-            /// <summary>from 0, the full response, to 1, none: to fade it</summary>
+            /// <summary>from 0, the full response, to 1, none: to fade it, or for the rows alone</summary>
             public float Weakness;
             public uint Rounds;
             public JointTransform* Ahead;
@@ -682,6 +683,8 @@ namespace Spherechain
             public UIntPtr OtherCount;
             /// <summary>null: none</summary>
             public Ground* Ground;
+            public uint* Planted;
+            public UIntPtr PlantedCount;
             /// <summary>the same answers on every one</summary>
             public Target Target;
             /// <summary>how many joints were turned; 0: `joints` is as it was, bit for bit</summary>

@@ -34,6 +34,8 @@ namespace Spherechain
         /// <summary>Other characters and props to stay out of, in their poses; at most 8, always in this order.</summary>
         public Body[] Others;
         public Ground? Ground;
+        /// <summary>Joints that stay where they are animated, at most 4. Those that turn themselves keep their direction, too.</summary>
+        public uint[] Planted;
         public Target Target;
 
         /// <summary>Answer: how many joints were turned; 0: the joints are as they were, bit for bit.</summary>
@@ -63,10 +65,10 @@ namespace Spherechain
 
         /// <summary>`parents`: of each joint of the model, before or after it; Native.NoJoint: it has none. `mobility`: how easily each
         /// joint turns, from 0, never, to 1; null: arms and hands. `budget`: the most that each is turned, in radians, up to 2; null: 60
-        /// degrees. `partPairs`: Model.PairSet() of the parts that are kept apart; null: those that a turn can move against each
+        /// degrees. `hinges`: the axis about which each joint bends, in its parent's space; null: elbows' own. `partPairs`: Model.PairSet() of the parts that are kept apart; null: those that a turn can move against each
         /// other. `rule`: what is a fault; null: Native.sc_default_rule().</summary>
         public Response(Body body, uint[] parents, float[] mobility = null, float[] budget = null, ulong[] partPairs = null,
-                        Rule? rule = null)
+                        Rule? rule = null, Vec3[] hinges = null)
         {
             Text.Require(body, Field.Bodies, "the body");
             Text.Require(parents, Field.Parents, "the list of parents");
@@ -74,6 +76,7 @@ namespace Spherechain
             jointCount = parents.Length;
             CheckLength(mobility == null ? jointCount : mobility.Length, Field.Joints, "fewer mobilities than parents");
             CheckLength(budget == null ? jointCount : budget.Length, Field.Joints, "fewer budgets than parents");
+            CheckLength(hinges == null ? jointCount : hinges.Length, Field.Joints, "fewer hinges than parents");
             Body.CheckBits(partPairs, body.Model.PartCount * body.Model.PartCount, Field.PartPairs, "a bit for each two parts: Model.PairSet()");
             Rule limits = rule.GetValueOrDefault();
             body.Enter(false);
@@ -81,6 +84,7 @@ namespace Spherechain
             {
                 fixed (uint* above = jointCount == 0 ? new uint[1] : parents)
                 fixed (float* mobilities = mobility, budgets = budget)
+                fixed (Vec3* axes = hinges)
                 fixed (ulong* pairs = partPairs)
                 fixed (IntPtr* made = &handle)
                 {
@@ -89,6 +93,7 @@ namespace Spherechain
                     def.JointCount = Text.Size(jointCount);
                     def.Mobility = mobilities;
                     def.Budget = budgets;
+                    def.Hinges = axes;
                     def.PartPairs = pairs;
                     def.Rule = rule.HasValue ? &limits : null;
                     Text.Check(Native.sc_create_response(body.Handle, &def, made));
@@ -139,6 +144,7 @@ namespace Spherechain
             fixed (ulong* words = state.Words)
             fixed (JointTransform* own = joints, ahead = frame.Ahead)
             fixed (float* weights = frame.MorphWeights)
+            fixed (uint* planted = frame.Planted)
             {
                 JointTransform place = frame.Place.GetValueOrDefault();
                 Ground plane = frame.Ground.GetValueOrDefault();
@@ -158,6 +164,8 @@ namespace Spherechain
                 f.Others = bodies;
                 f.OtherCount = Text.Size(others);
                 f.Ground = frame.Ground.HasValue ? &ground : null;
+                f.Planted = planted;
+                f.PlantedCount = Text.Size(planted == null ? 0 : frame.Planted.Length);
                 f.Target = frame.Target;
                 Text.Check(Native.sc_respond(handle, words, &f));
                 frame.Turned = (int)f.Turned;

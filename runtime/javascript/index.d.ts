@@ -156,9 +156,10 @@ export interface Body {
   /** Collision response: joint rotations in, corrected ones out. It sets the pose of this body, and serves any number of characters of the
    * model in turn. `parents`: of each of your joints, before or after it; -1: none. `mobility`: how easily each joint turns, from 0, never,
    * to 1; arms and hands if left out; at most 16 may turn. `budget`: the most that each is turned, in radians, up to 2; 1.05, 60 degrees, if
+   * left out. `hinges`: the axis about which each joint bends, three numbers in its parent's space; zeros: about all alike; elbows' own if
    * left out. `partPairs`: the pairs of body parts that are kept apart; those that a turn can move against each other if left out. */
   createResponse(options: {
-    parents: ArrayLike<number>; mobility?: ArrayLike<number>; budget?: ArrayLike<number>; partPairs?: readonly (readonly [number, number])[];
+    parents: ArrayLike<number>; mobility?: ArrayLike<number>; budget?: ArrayLike<number>; hinges?: ArrayLike<number>; partPairs?: readonly (readonly [number, number])[];
     rule?: Partial<Rule>;
   }): Response;
   /** Frees the memory, of its responses too. Every later call throws. */
@@ -193,6 +194,8 @@ export interface ResponseOptions {
   /** Other characters and props to stay out of, in their poses; at most 8, always in this order. */
   others?: readonly Body[];
   ground?: { up?: ArrayLike<number>; height?: number };
+  /** Joints that stay where they are animated, at most 4. Those that turn themselves keep their direction, too. */
+  planted?: ArrayLike<number>;
 }
 
 export interface Responded {

@@ -507,6 +507,7 @@ public static class ApiTest
                 Native.ResponseDef def = new Native.ResponseDef { Parents = above, JointCount = new UIntPtr((uint)parents.Length) };
                 Check(Native.sc_create_response(raw.Handle, &def, &handle).Code == Code.Ok, "a response of the C interface");
             }
+            uint planted = 2;
             for (int options = 0; options < 2; ++options)
             {
                 int turned = 0, rows = 0;
@@ -525,12 +526,12 @@ public static class ApiTest
                         frame = new ResponseFrame
                         {
                             Seconds = seconds, Place = place, Weakness = 0.25f, Rounds = 2, Ahead = frames[i + 1], AheadFrames = 1,
-                            Others = new[] { other }, Ground = ground,
+                            Others = new[] { other }, Ground = ground, Planted = new uint[] { 2 },
                         };
                         f = new Native.ResponseFrame
                         {
                             Seconds = seconds, Place = &place, Weakness = 0.25f, Rounds = 2, AheadFrames = 1, Others = &met,
-                            OtherCount = new UIntPtr(1), Ground = &plane,
+                            OtherCount = new UIntPtr(1), Ground = &plane, Planted = &planted, PlantedCount = new UIntPtr(1),
                         };
                     }
                     ResponseFrame again = frame;

@@ -69,6 +69,7 @@ void spoil_state(Case& c, ResponseState& state) {
 struct DrawnFrame {
   ResponseFrame frame;
   const sc_body* others[3] = {};
+  std::uint32_t planted[4] = {};
   Status wanted{};
 };
 
@@ -83,7 +84,7 @@ struct Buffers {
 void spoil_frame(Case& c, const Body& own, DrawnFrame& out) {
   ResponseFrame& frame = out.frame;
   const float none[] = {NAN, -1e-38F, -1, 1.5F, INFINITY};
-  switch (c.random.below(6)) {
+  switch (c.random.below(7)) {
     case 0:
       frame.seconds = c.random.pick(none);
       out.wanted = {SC_BAD_VALUE, SC_FIELD_QUERY};
@@ -101,6 +102,12 @@ void spoil_frame(Case& c, const Body& own, DrawnFrame& out) {
       frame.other_count = 1 + c.random.below(3);
       out.others[frame.other_count - 1] = nullptr;
       out.wanted = {SC_NULL, SC_FIELD_BODIES};
+      return;
+    case 5:
+      frame.planted = out.planted;
+      frame.planted_count = 1;
+      out.planted[0] = 0x10000;
+      out.wanted = {SC_BAD_VALUE, SC_FIELD_JOINTS};
       return;
     case 4:
       frame.joints = nullptr;
@@ -134,6 +141,13 @@ void draw_frame(Case& c, const Buffers& buffers, const Body& own, const Body& ot
   frame.others = out.others;
   frame.other_count = c.random.one_in(2) ? c.random.below(3) : 0;
   if (c.random.one_in(3)) frame.ground = &buffers.ground;
+  if (buffers.joint_count > 0 && c.random.one_in(3)) {
+    frame.planted = out.planted;
+    frame.planted_count = c.random.below(5);
+    for (std::uint32_t& joint : out.planted) {
+      joint = static_cast<std::uint32_t>(c.random.up_to(buffers.joint_count - 1));
+    }
+  }
   if (!is_sound) out.wanted = {SC_BAD_VALUE, SC_FIELD_TRANSFORM};
   if (c.random.one_in(6)) spoil_frame(c, own, out);
 }
@@ -239,6 +253,12 @@ void fuzz_response(Case& c) {
   def.mobility = c.random.one_in(8) ? nullptr : mobility;
   def.budget = c.random.one_in(2) ? nullptr : budget;
   Status wanted = are_parents ? Status{} : Status{SC_BAD_VALUE, SC_FIELD_PARENTS};
+  auto* const hinges = c.arena.add<Vec3>(count);
+  for (std::size_t j = 0; j < count; ++j) {
+    const float entries[] = {0, 1, -1e-20F, 1e30F};
+    hinges[j] = {c.random.pick(entries), c.random.pick(entries), c.random.pick(entries)};
+  }
+  def.hinges = c.random.one_in(2) ? nullptr : hinges;
   if (count > 0 && c.random.one_in(16)) {
     const float none[] = {NAN, -1, 1.5F, INFINITY};
     mobility[c.random.up_to(count - 1)] = c.random.pick(none);

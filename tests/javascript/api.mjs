@@ -431,6 +431,8 @@ test('a response turns arms out of a body, of another one and of the ground', ()
   assert.equal(fresh({ partPairs: [] }), 0);
   assert.equal(fresh({}, { weakness: 1 }), 0);
   assert.ok(fresh({ rule: { touchDepth: 0.02 } }) !== turned);
+  assert.ok(fresh({ hinges: new Float32Array(3 * parents.length).fill(1) }) > 0);
+  assert.equal(fresh({}, { planted: parents.map((_, joint) => joint).filter(joint => parents[joint] === upperArm).slice(0, 1) }), 0);
   assert.ok(fresh({}, { ahead: still, aheadFrames: 1, rounds: 2 }) !== turned);
 
   other.setPose(new Float32Array(12 * model.jointCount).map((_, i) => (i % 12 % 5 === 0 ? 1 : 0)), { place: { translation: [0.9 * model.height, 0, 0] } });
@@ -455,6 +457,7 @@ test('wrong arguments of a response are refused', () => {
   create({ parents, mobility: [1] }, /mobility: a number for each joint is wanted, not an Array of 1/);
   create({ parents, mobility: new Float32Array(parents.length).fill(2) }, /^joints: /);
   create({ parents, budget: new Float32Array(parents.length).fill(NaN) }, /budget/);
+  create({ parents, hinges: [1] }, /hinges: a number for each joint is wanted, not an Array of 1/);
   create({ parents, partPairs: [[0, 999]] }, /partPairs: \[0, 999\]/);
   create({ parents, rule: { touchDepth: NaN } }, /rule/);
 
@@ -471,6 +474,7 @@ test('wrong arguments of a response are refused', () => {
   respond({ seconds: '1' }, /seconds: a number is wanted/);
   respond({ seconds, weakness: -1 }, /^query: /);
   respond({ seconds, rounds: 17 }, /^query: /);
+  respond({ seconds, planted: [0, 0, 0, 0, 0] }, /^joints: /);
   respond({ seconds, rounds: 1.5 }, /rounds: a whole number/);
   respond({ seconds, ahead: joints }, /ahead, aheadFrames: both/);
   respond({ seconds, aheadFrames: 1 }, /ahead, aheadFrames: both/);

@@ -53,6 +53,7 @@ static void respond(sc_body* body, const sc_body* other, const char* parents, co
   sc_transform* own = malloc(frame_size);
   const sc_transform place = {{0.25f, 0.5f, 0}, {0, 0.6f, 0, 0.8f}, {1, 1, 1}};
   const sc_ground ground = {{0, 1, 0}, 0.75f, NULL, NULL};
+  const uint32_t planted = 2;
   uint64_t state[SC_RESPONSE_WORDS] = {0};
   for (size_t i = 0; i < frames; ++i) {
     memcpy(own, clip + i * def.joint_count, frame_size);
@@ -68,6 +69,8 @@ static void respond(sc_body* body, const sc_body* other, const char* parents, co
       frame.others = &other;
       frame.other_count = 1;
       frame.ground = &ground;
+      frame.planted = &planted;
+      frame.planted_count = 1;
     }
     require(sc_respond(response, state, &frame));
     fwrite(own, frame_size, 1, stdout);

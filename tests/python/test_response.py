@@ -74,7 +74,8 @@ class ResponseTest(unittest.TestCase):
             for i, joints in enumerate(self.clip):
                 options = {} if not with_options else {
                     "place": PLACE, "weakness": 0.25, "rounds": 2, "ahead": self.clip[min(i + 1, FRAMES - 1)], "ahead_frames": 1,
-                    "others": [spherechain.Posed(self.model, self.rest)], "ground": spherechain.Ground((0, 1, 0), 0.75)}
+                    "others": [spherechain.Posed(self.model, self.rest)], "ground": spherechain.Ground((0, 1, 0), 0.75),
+                    "planted": [2]}
                 before = joints.copy()
                 found = response.respond(state, joints, SECONDS, **options)
                 self.assertEqual(joints.tobytes(), before.tobytes())
@@ -193,28 +194,34 @@ class ResponseTest(unittest.TestCase):
         respond("^others has 9 bodies", others=[posed] * 9)
         respond(r"^others\[0\] has poses \(1,\): pass one", others=[spherechain.Posed(self.model, self.rest[None])])
         respond("^ground: pass", ground=((0, 2, 0), 0))
+        respond("^planted is -1", planted=[-1])
+        respond("^joints: ", planted=[0] * 5)
         self.assertEqual(len(self.play(response, state, self.clip[30:31], others=[posed] * 8)), 1)
 
     def test_the_module_itself_reads_nothing_out_of_bounds(self):
         model, count, rule = self.model._native, len(self.parents), list(spherechain.Rule())
         parents = np.array(self.parents).astype(np.uint32)
-        good = _native.Response(model, parents, None, None, None, rule, None)
-        for arguments in ((parents[::2], None, None, None, rule), (parents, np.zeros(count - 1, np.float32), None, None, rule),
-                          (parents, None, np.zeros((1, count), np.float32), None, rule),
-                          (parents, None, None, np.zeros(1, np.uint64), rule), (parents, None, None, None, rule[1:])):
-            with self.assertRaisesRegex(ValueError, "parents|mobility|budget|part_pairs|rule"):
+        good = _native.Response(model, parents, None, None, None, None, rule, None)
+        for arguments in ((parents[::2], None, None, None, None, rule),
+                          (parents, np.zeros(count - 1, np.float32), None, None, None, rule),
+                          (parents, None, np.zeros((1, count), np.float32), None, None, rule),
+                          (parents, None, None, np.zeros((count, 2), np.float32), None, rule),
+                          (parents, None, None, None, np.zeros(1, np.uint64), rule),
+                          (parents, None, None, None, None, rule[1:])):
+            with self.assertRaisesRegex(ValueError, "parents|mobility|budget|hinges|part_pairs|rule"):
                 _native.Response(model, *arguments, None)
         joints = np.zeros((count, 10), np.float32)
         fixed = joints.copy()
         fixed.flags.writeable = False
         state = np.zeros(_native.RESPONSE_WORDS, np.uint64)
         frame = dict(seconds=0.03, weakness=0, rounds=0, ahead_frames=0, place=None, ahead=None, morph_weights=None,
-                     others=[], ground=None)
+                     others=[], ground=None, planted=np.zeros(0, np.uint32))
         for own, words, options in ((joints[1:], state, {}), (fixed, state, {}), (joints, state[1:], {}),
                                     (joints, state, {"place": joints[0]}), (joints, state, {"ahead": joints[1:]}),
+                                    (joints, state, {"planted": np.zeros((1, 2), np.uint32)}),
                                     (joints, state, {"others": [(model, (self.rest[None, 1:], None, None))]}),
                                     (joints, state, {"others": [(model, (np.stack([self.rest] * 2), None, None))]})):
-            with self.assertRaisesRegex(ValueError, "joints|state|place|ahead|bones|others"):
+            with self.assertRaisesRegex(ValueError, "joints|state|place|ahead|planted|bones|others"):
                 good.respond(words, own, {**frame, **options})
 
     def test_threads_that_share_a_response_get_right_frames_or_a_refusal(self):

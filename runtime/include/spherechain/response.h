@@ -17,6 +17,9 @@ typedef struct sc_response_def {
    * 1, of hands 0.3, others 0. */
   const float* mobility SC_ZERO;
   const float* budget SC_ZERO; /* the most that each joint is turned, in radians, up to 2; null: 1.05, 60 degrees */
+  /* The axis about which each joint bends, in its parent's space, of any length: it hardly turns about others. Zeros:
+   * about all axes alike. Null: elbows bend as they are bent at rest and in the pose. */
+  const sc_vec3* hinges SC_ZERO;
   /* The pairs of body parts that are kept apart, as of sc_query. Null: those that a turn can move against each other,
    * unless one hangs on the other. */
   const uint64_t* part_pairs SC_ZERO;
@@ -29,16 +32,18 @@ typedef struct sc_response_def {
  * the same, on every machine. Any words are safe to pass; those that make no sense are forgotten. */
 #define SC_RESPONSE_WORDS 480
 
-/* Two spots that are to stay apart. Any solver can use it: if a joint at o turns by the small vector w (the world's
- * axes, radians), the gap grows by w . ((at - o) x normal) if the joint moves `part`, and shrinks by w . ((at_other -
- * o) x normal) if it moves `other`. */
+/* Two spots that are to stay apart: of parts that meet, or met within half a second, and of parts that come within 8 mm
+ * of each other on a human, unless they are as near at rest. The latter are listed where a joint is turned or parts
+ * meet, and where `weakness` is 1; never of the ground. Any solver can use it: if a joint at o turns by the small
+ * vector w (the world's axes, radians), the gap grows by w . ((at - o) x normal) if the joint moves `part`, and shrinks
+ * by w . ((at_other - o) x normal) if it moves `other`. */
 typedef struct sc_contact_row {
   uint32_t part, other;
   uint32_t body;        /* 0: the character's own; k: other is a part of others[k - 1], or SC_FLOOR */
   sc_vec3 at, at_other; /* on the skin of each, in the world */
   sc_vec3 normal;       /* from `other` to `part`, of unit length */
   float gap;            /* their distance along `normal`; negative: so deep. The pose's units, as `allowed` is */
-  float allowed;        /* how deep they may be before it is a fault */
+  float allowed;        /* how deep they may be before it is a fault; 0 of parts that have not met */
 } sc_contact_row;
 
 typedef struct sc_response_frame {
@@ -49,7 +54,7 @@ typedef struct sc_response_frame {
   const float* morph_weights SC_ZERO; /* as of sc_pose */
   size_t morph_weight_count SC_ZERO;
   float seconds SC_ZERO;  /* since the last frame, up to 1 */
-  float weakness SC_ZERO; /* from 0, the full response, to 1, none: to fade it */
+  float weakness SC_ZERO; /* from 0, the full response, to 1, none: to fade it, or for the rows alone */
   /* The most times that contacts are looked for; 0: 3; 16 at most. The first frame of a state takes twice as many. */
   uint32_t rounds SC_ZERO;
   /* Null, or where the joints will be `ahead_frames` later, from 1 to 3: the response then sets in before the contact.
@@ -59,7 +64,11 @@ typedef struct sc_response_frame {
   const sc_body* const* others SC_ZERO; /* other characters and props to stay out of, at most 8, always in this order */
   size_t other_count SC_ZERO;
   const sc_ground* ground SC_ZERO; /* null: none */
-  sc_target target SC_ZERO;        /* the same answers on every one */
+  /* Joints that stay where they are animated, a hand on a table: at most 4, and only as well as the joints above them
+   * can hold them there. Those that turn themselves keep their direction, too. */
+  const uint32_t* planted SC_ZERO;
+  size_t planted_count SC_ZERO;
+  sc_target target SC_ZERO; /* the same answers on every one */
   /* out */
   uint32_t turned SC_ZERO;            /* how many joints were turned; 0: `joints` is as it was, bit for bit */
   uint32_t at_budget SC_ZERO;         /* how many were not turned as far as wanted */
@@ -75,7 +84,7 @@ extern "C" {
 /* The body must outlive the response. On failure *response is null: SC_NULL, SC_NO_MEMORY; SC_BAD_VALUE with
  * SC_FIELD_PARENTS: a parent does not exist, or is below its child; SC_BAD_VALUE with SC_FIELD_JOINTS: a mobility or
  * budget is out of range, or more than 16 joints turn; SC_TOO_SMALL with SC_FIELD_JOINTS: fewer joints than the model
- * has. */
+ * has. A hinge that is not finite is SC_BAD_VALUE with SC_FIELD_JOINTS. */
 SPHERECHAIN_API sc_status sc_create_response(sc_body* body, const sc_response_def* def,
                                              sc_response** response) SC_NOEXCEPT;
 SPHERECHAIN_API void sc_destroy_response(sc_response* response) SC_NOEXCEPT; /* null is fine */

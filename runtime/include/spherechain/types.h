@@ -7,7 +7,7 @@
 
 /* The version of the binary interface. It changes with every incompatible change of a struct or function.
  * sc_asset_open() compares the program's number with the library's and refuses another (SC_WRONG_ABI). */
-#define SC_ABI_VERSION 16
+#define SC_ABI_VERSION 17
 
 /* Marks what a shared library exports. The CMake target and pkg-config define SPHERECHAIN_SHARED where the library is
  * shared; SPHERECHAIN_BUILDING is defined only while the library itself is built. */

@@ -43,10 +43,10 @@ static_assert(offsetof(sc_penetration, measures) == 32 * 4 && offsetof(sc_measur
 static_assert(offsetof(sc_measures, through) == 14 * 4);
 static_assert(SC_RESPONSE_WORDS == 480 && sizeof(sc_contact_row) == 14 * 4 &&
               offsetof(sc_contact_row, normal) == 9 * 4);
-static_assert(sizeof(sc_response_def) == 7 * 4 && offsetof(sc_response_def, part_pairs) == 4 * 4);
-static_assert(sizeof(sc_response_frame) == 18 * 4 && offsetof(sc_response_frame, seconds) == 4 * 4);
-static_assert(offsetof(sc_response_frame, others) == 9 * 4 && offsetof(sc_response_frame, target) == 12 * 4);
-static_assert(offsetof(sc_response_frame, rows) == 16 * 4);
+static_assert(sizeof(sc_response_def) == 8 * 4 && offsetof(sc_response_def, part_pairs) == 5 * 4);
+static_assert(sizeof(sc_response_frame) == 20 * 4 && offsetof(sc_response_frame, seconds) == 4 * 4);
+static_assert(offsetof(sc_response_frame, others) == 9 * 4 && offsetof(sc_response_frame, target) == 14 * 4);
+static_assert(offsetof(sc_response_frame, rows) == 18 * 4);
 static_assert(sizeof(sc_step_contact) == 11 * 4 && offsetof(sc_step_contact, triangle_a) == 6 * 4);
 
 namespace {

@@ -15,7 +15,7 @@ let loading = null;
 let call, bytes, words, floats;  // the module's functions, and views of all its memory
 let status, query, subject, pose, out, responseFrame, sentence;  // where calls pass structs
 const SENTENCE_BYTES = 256;
-const ABI_VERSION = 16, IGNORED_PAIRS = 30;  // SC_ABI_VERSION, and where sc_asset_info.ignored_pairs is: module.cpp asserts both
+const ABI_VERSION = 17, IGNORED_PAIRS = 30;  // SC_ABI_VERSION, and where sc_asset_info.ignored_pairs is: module.cpp asserts both
 const STATE_WORDS = 960, JOINT_FLOATS = 10, OTHERS_MAX = 8;  // twice SC_RESPONSE_WORDS; an sc_transform
 const handles = new WeakMap();  // where models, bodies, responses and ignored pairs are in memory, until they are disposed of
 
@@ -29,7 +29,7 @@ async function instantiate() {
   call = instance.exports;
   look();
   call._initialize?.();
-  [status, query, subject, pose, out, responseFrame, sentence] = [8, 60, 56, 40, 128, 72, SENTENCE_BYTES].map(allocate);
+  [status, query, subject, pose, out, responseFrame, sentence] = [8, 60, 56, 40, 128, 80, SENTENCE_BYTES].map(allocate);
   return new Spherechain();
 }
 
@@ -225,7 +225,8 @@ const Query = struct({
 const integers = () => copied(value => 4 * value.length, (place, value) => words.set(value, place / 4));
 const ContactRow = struct({ part: int, other: int, body: int, at: vec3, atOther: vec3, normal: vec3, gap: float, allowed: float });
 const ResponseDef = struct({
-  parents: integers(), jointCount: int, mobility: copiedFloats(), budget: copiedFloats(), partPairs: integers(), rule: limits, allocator: int,
+  parents: integers(), jointCount: int, mobility: copiedFloats(), budget: copiedFloats(), hinges: copiedFloats(),
+  partPairs: integers(), rule: limits, allocator: int,
 });
 const ResponseFrame = struct({
   joints: copiedFloats(), place: copied(() => 4 * Transform.words, Transform.write), morphWeights: copiedFloats(), morphWeightCount: int,
@@ -233,8 +234,8 @@ const ResponseFrame = struct({
   others: copied(value => 4 * value.length, (place, value) => value.forEach((other, i) => {
     words[place / 4 + i] = other instanceof Body ? handleOf(other, 'other body') : refuse(`others[${i}]: a body is wanted, not ${kindOf(other)}`);
   })),
-  otherCount: int, ground: copied(() => 4 * Ground.words, Ground.write), target: int, turned: int, atBudget: int, remaining: float, rows: int,
-  rowCount: int,
+  otherCount: int, ground: copied(() => 4 * Ground.words, Ground.write), planted: integers(), plantedCount: int, target: int,
+  turned: int, atBudget: int, remaining: float, rows: int, rowCount: int,
 });
 const responseState = integers();
 
@@ -465,13 +466,14 @@ class Body {
   createResponse(options) {
     const body = handleOf(this, 'body'), { partCount } = this.model;
     checkKeys(options, RESPONSE_KEYS, 'createResponse()');
-    const { parents, mobility, budget, partPairs, rule } = options;
+    const { parents, mobility, budget, hinges, partPairs, rule } = options;
     checkNumbers(parents, parents?.length, 'parents', Number.isInteger);
     for (const [name, given] of [['mobility', mobility], ['budget', budget]]) {
       if (given !== undefined) checkNumbers(given, parents.length, name);
     }
+    if (hinges !== undefined) checkNumbers(hinges, 3 * parents.length, 'hinges');
     ResponseDef.write(subject, {
-      parents, jointCount: parents.length, mobility, budget, rule,
+      parents, jointCount: parents.length, mobility, budget, hinges, rule,
       partPairs: partPairs === undefined ? undefined : pairBits(partPairs, partCount, partCount),
     }, 'response');
     call.sc_create_response(status, body, subject, out);
@@ -514,9 +516,9 @@ class Body {
   }
 }
 
-const RESPONSE_KEYS = ['parents', 'mobility', 'budget', 'partPairs', 'rule'];
-const FRAME_KEYS = ['seconds', 'place', 'morphWeights', 'weakness', 'rounds', 'ahead', 'aheadFrames', 'others', 'ground'];
-const FRAME_JOINTS = 0, FRAME_TURNED = 13, FRAME_AT_BUDGET = 14, FRAME_REMAINING = 15, FRAME_ROWS = 16;  // words of an sc_response_frame
+const RESPONSE_KEYS = ['parents', 'mobility', 'budget', 'hinges', 'partPairs', 'rule'];
+const FRAME_KEYS = ['seconds', 'place', 'morphWeights', 'weakness', 'rounds', 'ahead', 'aheadFrames', 'others', 'ground', 'planted'];
+const FRAME_JOINTS = 0, FRAME_TURNED = 15, FRAME_AT_BUDGET = 16, FRAME_REMAINING = 17, FRAME_ROWS = 18;  // words of an sc_response_frame
 
 class Response {
   #jointCount;
@@ -531,15 +533,16 @@ class Response {
   respond(state, joints, options) {
     const response = handleOf(this, 'response'), length = JOINT_FLOATS * this.#jointCount, { morphCount } = this.body.model;
     checkKeys(options, FRAME_KEYS, 'respond()');
-    const { ahead, aheadFrames = 0, others = [], morphWeights } = options;
+    const { ahead, aheadFrames = 0, others = [], planted = [], morphWeights } = options;
     if (!(state instanceof Uint32Array) || state.length !== STATE_WORDS) refuse(`state: what createResponseState() made is wanted, not ${kindOf(state)}`);
     checkJointFloats(joints, length, 'joints');
     if (ahead !== undefined) checkJointFloats(ahead, length, 'ahead');
     if ((ahead === undefined) !== (aheadFrames === 0)) refuse('ahead, aheadFrames: both are wanted, or neither');
     if (checkList(others, 'others').length > OTHERS_MAX) refuse(`others: at most ${OTHERS_MAX} bodies are wanted, not ${others.length}`);
+    if (planted.length > 0) checkNumbers(planted, planted.length, 'planted', Number.isInteger);
     if (morphWeights && morphWeights.length !== morphCount) refuse(`${morphWeights.length} morph weights: the asset has ${morphCount} morphs`);
     ResponseFrame.write(responseFrame, {
-      ...options, joints, aheadFrames, others, otherCount: others.length, morphWeightCount: morphWeights?.length,
+      ...options, joints, aheadFrames, others, otherCount: others.length, planted, plantedCount: planted.length, morphWeightCount: morphWeights?.length,
     }, 'frame');
     responseState.write(out, state);
     const memory = words[out / 4] / 4, at = responseFrame / 4, own = words[at + FRAME_JOINTS] / 4;

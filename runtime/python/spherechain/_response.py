@@ -72,13 +72,15 @@ class Response:
     joint_count: int
 
     def __init__(self, model: Model, parents: Sequence[Optional[int]], *, mobility: Optional[Sequence[float]] = None,
-                 budget: Optional[Sequence[float]] = None, part_pairs: Optional[Sequence[Tuple[int, int]]] = None,
-                 rule: Rule = Rule(), largest_other: Optional[Model] = None) -> None:
+                 budget: Optional[Sequence[float]] = None, hinges: Optional[Sequence[Sequence[float]]] = None,
+                 part_pairs: Optional[Sequence[Tuple[int, int]]] = None, rule: Rule = Rule(),
+                 largest_other: Optional[Model] = None) -> None:
         """parents: of each joint of Model.joints, before or after it; None or -1: it has none. Joints that the model does
         not have, below a hand say, may follow.
         mobility: how easily each joint turns, from 0, never, to 1; at most 16 may turn. None: the joints of upper arms and
         forearms 1, of hands 0.3, others 0.
         budget: the most that each joint is turned, in radians, up to 2; None: 1.05, 60 degrees.
+        hinges: the axis about which each joint bends, in its parent's space; zeros: about all alike. None: elbows' own.
         part_pairs: the pairs of body parts that are kept apart. None: those that a turn can move against each other, unless
         one hangs on the other.
         largest_other: the largest model of those that respond() gets as `others`; None: none is larger than `model`.
@@ -101,15 +103,17 @@ class Response:
         shares = [None if given is None else np.ascontiguousarray(
             model._array(name, np.asarray(given, np.float32), _SINGLE, (len(numbers),), exact=True))
             for name, given in (("mobility", mobility), ("budget", budget))]
+        axes = None if hinges is None else np.ascontiguousarray(
+            model._array("hinges", np.asarray(hinges, np.float32), _SINGLE, (len(numbers), 3), exact=True))
         self._native = _native.Response(
-            model._native, np.where(numbers < 0, _NO_JOINT, numbers).astype(np.uint32), *shares,
+            model._native, np.where(numbers < 0, _NO_JOINT, numbers).astype(np.uint32), *shares, axes,
             _bits("part_pairs", part_pairs, len(model.parts), len(model.parts)), rule,
             None if largest_other is None else largest_other._native)
 
     def respond(self, state: ResponseState, joints: np.ndarray, seconds: float, *, place: Optional[np.ndarray] = None,
                 morph_weights: Optional[NDArray[np.float32]] = None, weakness: float = 0, rounds: int = 0,
                 ahead: Optional[np.ndarray] = None, ahead_frames: int = 0, others: Sequence[Posed] = (),
-                ground: Optional[Ground] = None) -> Responded:
+                ground: Optional[Ground] = None, planted: Sequence[int] = ()) -> Responded:
         """One frame. `state` is changed; `joints` is not.
 
         joints: where each joint is in its parent's space, as animated: dtype TRANSFORM (joints,), or float32 (joints, 10):
@@ -122,6 +126,7 @@ class Response:
         it in every frame of a state, or in none.
         others: characters and props to stay out of, at most 8, always in this order, each with one pose in the world.
         ground: to stay above.
+        planted: joints that stay where they are animated, at most 4; those that turn themselves keep their direction, too.
 
         Where nothing is near and the state is empty, the joints come back bit for bit. Some faults may be left: those of trunk
         and legs stay, and tight places have no way out. docs/response.md has the rest. On an exception the state is as it was.
@@ -141,7 +146,8 @@ class Response:
             "place": None if place is None else self._transforms("place", place, ())[0].reshape(1, _FLOATS),
             "ahead": None if ahead is None else self._transforms("ahead", ahead, (self.joint_count,))[0],
             "morph_weights": morphs, "others": [_other(i, other) for i, other in enumerate(others)],
-            "ground": None if ground is None else _plane(ground)}
+            "ground": None if ground is None else _plane(ground),
+            "planted": np.array([_whole("planted", joint, self.joint_count - 1) for joint in planted], np.uint32)}
         turned, at_budget, remaining, rows = self._native.respond(state.words, out, frame)
         corrected = out.view(TRANSFORM).reshape(self.joint_count) if is_structured else out
         return Responded(corrected, turned, at_budget, remaining, np.frombuffer(rows, CONTACT_ROW))

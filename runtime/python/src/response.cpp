@@ -21,6 +21,7 @@ class LoadedResponse {
  public:
   LoadedResponse(const LoadedModel& model, const Array<std::uint32_t>& parents,
                  const std::optional<Array<float>>& mobility, const std::optional<Array<float>>& budget,
+                 const std::optional<Array<float>>& hinges,
                  const std::optional<Array<std::uint64_t>>& part_pairs, const std::vector<float>& rule,
                  const LoadedModel* largest_other)
       : model_(&model), joint_count_(length(parents)) {
@@ -35,6 +36,7 @@ class LoadedResponse {
     def.joint_count = joint_count_;
     def.mobility = mobility ? checked(*mobility, {joint_count_}, "mobility") : nullptr;
     def.budget = budget ? checked(*budget, {joint_count_}, "budget") : nullptr;
+    def.hinges = hinges ? reinterpret_cast<Vec3*>(checked(*hinges, {joint_count_, 3}, "hinges")) : nullptr;
     def.part_pairs = part_pairs ? checked(*part_pairs, {(parts * parts + 63) / 64}, "part_pairs") : nullptr;
     def.rule = &limits;
     response_ = Response(body_, def);
@@ -72,6 +74,9 @@ class LoadedResponse {
     const std::vector<const sc_body*> others = take_others(given["others"], poses);
     frame.others = others.data();
     frame.other_count = others.size();
+    const auto planted = given["planted"].cast<Array<std::uint32_t>>();
+    frame.planted_count = length(planted);
+    frame.planted = checked(planted, {frame.planted_count}, "planted");
 
     ResponseState words;
     std::uint64_t* const kept = checked(state, {SC_RESPONSE_WORDS}, "state");
@@ -134,7 +139,7 @@ class LoadedResponse {
 void define_response(py::module_& module) {
   using Floats = std::optional<Array<float>>;
   py::class_<LoadedResponse>(module, "Response")
-      .def(py::init<const LoadedModel&, const Array<std::uint32_t>&, const Floats&, const Floats&,
+      .def(py::init<const LoadedModel&, const Array<std::uint32_t>&, const Floats&, const Floats&, const Floats&,
                     const std::optional<Array<std::uint64_t>>&, const std::vector<float>&, const LoadedModel*>(),
            py::keep_alive<1, 2>())
       .def("respond", &LoadedResponse::respond);

@@ -8,6 +8,7 @@
 #include "runtime/src/base/pair_bits.h"
 #include "runtime/src/base/status.h"
 #include "runtime/src/clusters/set_up.h"
+#include "runtime/src/gaps/gaps.h"
 #include "runtime/src/inside/inside_job.h"
 #include "runtime/src/penetrations/measure.h"
 #include "runtime/src/step/step_job.h"
@@ -24,6 +25,7 @@ std::size_t scratch_words_of(const sc_model& model, const sc_model& other, std::
                              bool finds_steps) {
   const AssetView &a = view_of(model.asset), &b = view_of(other.asset);
   std::size_t words = std::max({inside_scratch_words(a, a), inside_scratch_words(a, b), inside_scratch_words(b, a),
+                                gap_scratch_words(a, b), gap_scratch_words(b, a),
                                 skin_scratch_words(a), body_scratch_words(a, b), body_scratch_words(b, a),
                                 measure_words(a, a, true, max_triangles), measure_words(a, b, false, max_triangles),
                                 measure_words(b, a, false, max_triangles), floor_scratch_words(&model.asset)});

@@ -15,10 +15,12 @@
 namespace spherechain {
 namespace {
 
-constexpr double kRelease = 0.03;  // seconds, in which a turn that nothing asks for shrinks to 1 / e
-constexpr double kFastest = 8;     // radians a second
-constexpr double kNothing = 1e-4;  // a smaller turn ends
-constexpr double kLacks = 0.0006;  // a share of the height: what rows may lack without another round
+constexpr double kRelease = 0.03;       // seconds, in which a turn that nothing asks for shrinks to 1 / e
+constexpr double kFastest = 8;          // radians a second
+constexpr double kNothing = 1e-4;       // a smaller turn ends
+constexpr double kLacks = 0.0006;       // a share of the height: what rows may lack without another round
+constexpr double kPlantedOff = 0.0012;  // a share of the height: what planted joints may be off
+constexpr int kPlantSteps = 4, kHalvings = 6;
 constexpr std::uint32_t kRounds = 3, kFirstRounds = 2;
 
 using Turns = Double3[kTurningMost];
@@ -43,6 +45,10 @@ State load_state(const std::uint64_t* words) {
 
 bool is_zero(const Double3& v) { return dot(v, v) == 0; }
 
+bool are_turned(const sc_response& response, const Turns& turns) {
+  return std::any_of(turns, turns + response.turning_count, [](const Double3& turn) { return !is_zero(turn); });
+}
+
 Quaternion turned(const sc_transform& joint, const Double3& turn) {
   return product(turn_of(turn), quaternion_of(joint));
 }
@@ -57,8 +63,8 @@ Skeleton skeleton_of(const sc_response& response) {
   return {{response.parents.data, response.parents.size}, {response.order.data, response.order.size}};
 }
 
-// Moves the body to these joints with these turns.
-Status pose(sc_response& response, const sc_response_frame& frame, const sc_transform* joints, const Turns& turns) {
+// Places the joints with these turns.
+void place(sc_response& response, const sc_transform* joints, const Turns& turns) {
   std::copy_n(joints, response.joints.size, response.joints.data);
   for (std::size_t t = 0; t < response.turning_count; ++t) {
     if (!is_zero(turns[t])) {
@@ -67,6 +73,11 @@ Status pose(sc_response& response, const sc_response_frame& frame, const sc_tran
     }
   }
   place_joints(skeleton_of(response), response.joints.data, response.place, response.world);
+}
+
+// Moves the body to these joints with these turns.
+Status pose(sc_response& response, const sc_response_frame& frame, const sc_transform* joints, const Turns& turns) {
+  place(response, joints, turns);
   const sc_model& model = *response.body->model;
   const std::size_t bones = response.bones.size / 12;
   for (std::size_t b = 0; b < bones; ++b) {
@@ -90,6 +101,25 @@ Status pose(sc_response& response, const sc_response_frame& frame, const sc_tran
   return status;
 }
 
+// Brings planted joints back to where they are animated; where their joints cannot, all turn less.
+std::uint32_t hold_planted(sc_response& response, const sc_transform* joints, Turns& turns) {
+  std::uint32_t at_budget = limit_turns(response, turns);
+  for (int halving = 0; response.planted_count > 0; ++halving) {
+    for (int step = 0; step < kPlantSteps; ++step) {
+      place(response, joints, turns);
+      solve_planted(response, turns);
+      at_budget = limit_turns(response, turns);
+    }
+    place(response, joints, turns);
+    if (off_planted(response) <= kPlantedOff || halving == kHalvings) {
+      break;
+    }
+    std::for_each(turns, turns + response.turning_count,
+                  [&](Double3& turn) { turn = (halving + 1 < kHalvings ? 0.5 : 0.0) * turn; });
+  }
+  return at_budget;
+}
+
 // The turns that keep what can be known apart at these joints, from the rows of the frames before on.
 Status find_turns(sc_response& response, const sc_response_frame& frame, const sc_transform* joints, const State& state,
                   Turns& turns, std::uint32_t& at_budget) {
@@ -111,7 +141,7 @@ Status find_turns(sc_response& response, const sc_response_frame& frame, const s
       turns[t] = size > most ? last[t] + (most / size) * step : turns[t];
       turns[t] = (1 - double{frame.weakness}) * turns[t];
     }
-    at_budget = limit_turns(response, turns);
+    at_budget = hold_planted(response, joints, turns);
   };
   Status status = pose(response, frame, joints, turns);
   if (status != SC_OK) {
@@ -120,6 +150,7 @@ Status find_turns(sc_response& response, const sc_response_frame& frame, const s
   carry_rows(response, state, frame, seconds);
   next();
   const std::uint32_t rounds = (frame.rounds == 0 ? kRounds : frame.rounds) * (state.has_begun != 0 ? 1 : kFirstRounds);
+  forget_gaps(response);
   for (std::uint32_t round = 0; round < rounds; ++round) {
     status = pose(response, frame, joints, turns);
     status = status == SC_OK ? find_rows(response, frame, round == 0 ? seconds : 0) : status;
@@ -127,6 +158,14 @@ Status find_turns(sc_response& response, const sc_response_frame& frame, const s
       return status;
     }
     set_wanted(response, frame);
+    // Gaps matter where a correction could close them, or where rows are all that is asked for.
+    if (round == 0 && (are_turned(response, turns) || most_lacking(response) > 0 || frame.weakness == 1)) {
+      status = find_gaps(response, frame);
+      set_wanted(response, frame);
+    }
+    if (status != SC_OK) {
+      return status;
+    }
     if (round + 1 == rounds || !(most_lacking(response) > kLacks * response.height)) {
       break;
     }
@@ -138,9 +177,8 @@ Status find_turns(sc_response& response, const sc_response_frame& frame, const s
 // Gives up what makes it worse, at first by half: faults are not to be deeper in sum than they are animated.
 Status take_back(sc_response& response, const sc_response_frame& frame, Turns& turns) {
   const std::size_t count = response.turning_count;
-  const bool are_turned = std::any_of(turns, turns + count, [](const Double3& turn) { return !is_zero(turn); });
   const double after = response.fault_depth;
-  if (!are_turned || !(after > 0)) {
+  if (!are_turned(response, turns) || !(after > 0)) {
     return done();
   }
   State rows;
@@ -162,6 +200,7 @@ Status take_back(sc_response& response, const sc_response_frame& frame, Turns& t
   for (std::size_t t = 0; t < count; ++t) {
     tried[t] = 0.5 * turns[t];
   }
+  hold_planted(response, frame.joints, tried);
   status = look_at(tried);
   if (status == SC_OK && response.fault_depth > before) {
     std::fill_n(tried, count, Double3{0, 0, 0});
@@ -210,8 +249,13 @@ void list_rows(sc_response& response, sc_response_frame& frame) {
 
 Status check(const sc_response& response, const sc_response_frame& frame) {
   if (frame.joints == nullptr || (frame.ahead_frames > 0 && frame.ahead == nullptr) ||
-      (frame.other_count > 0 && frame.others == nullptr)) {
+      (frame.other_count > 0 && frame.others == nullptr) || (frame.planted_count > 0 && frame.planted == nullptr)) {
     return refuse(SC_NULL, frame.joints == nullptr ? SC_FIELD_JOINTS : SC_FIELD_BODIES);
+  }
+  if (frame.planted_count > kPlantedMost ||
+      std::any_of(frame.planted, frame.planted + frame.planted_count,
+                  [&](std::uint32_t joint) { return joint >= response.joints.size; })) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_JOINTS);
   }
   const auto is_share = [](float value) { return value >= 0 && value <= 1; };
   if (!is_share(frame.seconds) || !is_share(frame.weakness) || frame.rounds > 16 || frame.other_count > kOthersMost ||
@@ -250,6 +294,8 @@ extern "C" sc_status sc_respond(sc_response* response, uint64_t* state, sc_respo
   frame->row_count = 0;
   State memory = load_state(state);
   own.place = frame->place == nullptr ? kUnmoved : affine_of(*frame->place);
+  own.planted_count = static_cast<std::uint32_t>(frame->planted_count);
+  std::copy_n(frame->planted, frame->planted_count, own.planted);
   const std::size_t count = own.turning_count;
   if (count == 0) {
     return done();
@@ -263,7 +309,8 @@ extern "C" sc_status sc_respond(sc_response* response, uint64_t* state, sc_respo
   if (status != SC_OK) {
     return status;
   }
-  const bool is_clear = own.row_count == 0;
+  const bool is_clear =
+      std::all_of(own.rows, own.rows + own.row_count, [](const Row& row) { return row.kept.is_clear != 0; });
   for (std::size_t t = 0; t < count; ++t) {
     turns[t] = is_clear && length(turns[t]) < kNothing ? Double3{0, 0, 0} : turns[t];
   }
@@ -273,7 +320,7 @@ extern "C" sc_status sc_respond(sc_response* response, uint64_t* state, sc_respo
   if (is_ahead) {
     smooth(own, memory, frame->ahead_frames, turns, output);
     place_joints(skeleton_of(own), frame->joints, own.place, own.animated);
-    limit_turns(own, output);
+    hold_planted(own, frame->joints, output);
     status = pose(own, *frame, frame->joints, output);
     if (status != SC_OK) {
       return status;

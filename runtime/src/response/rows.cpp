@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/src/base/pair_bits.h"
 #include "runtime/src/base/status.h"
 #include "runtime/src/penetrations/rule.h"
+#include "runtime/src/simd/simd.h"
 
 namespace spherechain {
 namespace {
@@ -19,6 +21,7 @@ constexpr double kGapMost = 0.008, kSlideMost = 0.05;  // of a row that is kept
 constexpr float kUnseenMost = 0.5F;                    // seconds
 constexpr double kLoosen = 0.15;                       // heights a second, by which a row that is not found gives way
 constexpr double kForget = 0.07;                       // seconds, in which a larger depth is allowed again
+constexpr double kMargin = 0.0046;                     // wider gaps are no rows: 8 mm on a human
 constexpr double kAnyDepth = 10;                       // where pieces slide in each other as they like
 
 // The spaces of a row's two spots, in a pose of the joints.
@@ -80,12 +83,23 @@ bool keep(const Spaces& spaces, Row& row) {
 Row* find_patch(sc_response& response, const Row& like) {
   for (std::size_t i = 0; i < response.row_count; ++i) {
     Row& row = response.rows[i];
-    if (row.kept.part == like.kept.part && row.kept.other == like.kept.other && row.kept.body == like.kept.body &&
+    if (row.kept.is_clear == like.kept.is_clear && row.kept.part == like.kept.part &&
+        row.kept.other == like.kept.other && row.kept.body == like.kept.body &&
         length(row.at - like.at) < kPatch * response.height) {
       return &row;
     }
   }
   return nullptr;
+}
+
+// A new row, or one of parts that do not meet.
+Row* free_row(sc_response& response) {
+  if (response.row_count < kRowsMost) {
+    return &response.rows[response.row_count++];
+  }
+  Row* const end = response.rows + response.row_count;
+  Row* const clear = std::find_if(response.rows, end, [](const Row& row) { return row.kept.is_clear != 0; });
+  return clear == end ? nullptr : clear;
 }
 
 void take(sc_response& response, const sc_response_frame& frame, const Penetration& found, std::size_t body,
@@ -107,8 +121,7 @@ void take(sc_response& response, const sc_response_frame& frame, const Penetrati
     }
     const double before = double{place->kept.allowed};
     allowed = std::min(allowed, before + (allowed - before) * std::min(seconds / kForget, 1.0));
-  } else if (response.row_count < kRowsMost) {
-    place = &response.rows[response.row_count++];
+  } else if (place = free_row(response); place != nullptr) {
     *place = row;
   } else {
     return;
@@ -132,12 +145,68 @@ void take_all(sc_response& response, const sc_response_frame& frame, const sc_pe
   }
 }
 
+// Are the two parts of this bit kept apart, of one body or of two?
+bool is_asked(const sc_response& response, std::size_t body, std::size_t part, std::size_t bit) {
+  return body == 0 ? (response.part_pairs[bit / 64] >> bit % 64 & 1) != 0 : response.turning_of_part[part] != 0;
+}
+
+// Adds the gaps of parts that are near each other and have no contact.
+Status take_gaps(sc_response& response, const sc_response_frame& frame, std::size_t body) {
+  const sc_body &own = *response.body, &other = body == 0 ? own : *frame.others[body - 1];
+  const std::size_t parts = response.joint_of_part.size, count = asset_of(other).part_count();
+  Span<std::uint64_t>& pairs = response.apart_pairs;
+  std::fill(pairs.begin(), pairs.end(), std::uint64_t{0});
+  for (std::size_t bit = 0; bit < parts * count; ++bit) {
+    pairs[bit / 64] |= std::uint64_t{is_asked(response, body, bit / count, bit)} << bit % 64;
+  }
+  for (std::size_t i = 0; i < response.row_count; ++i) {
+    const KeptRow& row = response.rows[i].kept;
+    if (row.body == body) {
+      const std::size_t bit = row.part * count + row.other, back = row.other * count + row.part;
+      pairs[bit / 64] &= ~(std::uint64_t{1} << bit % 64);
+      pairs[back / 64] &= ~(std::uint64_t{body == 0} << back % 64);
+    }
+  }
+  Gap gaps[kGapsMost];
+  GapJob job;
+  job.a = side_of(own, nullptr);
+  job.b = side_of(other, nullptr);
+  job.are_one = body == 0;
+  job.part_pairs = pairs.data;
+  job.margin = kMargin * response.height;
+  job.patch = kPatch * response.height;
+  job.gaps = {gaps, kGapsMost};
+  job.scratch = own.scratch;
+  if (gap_scratch_words(asset_of(own), asset_of(other)) > own.scratch_words) {
+    return refuse(SC_TOO_SMALL, SC_FIELD_BODIES);
+  }
+  if (!resolve_target(frame.target, job.target)) {
+    return refuse(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET);
+  }
+  job.run();
+  for (std::size_t i = 0; i < job.count && response.row_count < kRowsMost; ++i) {
+    Row row{};
+    row.kept.part = static_cast<std::uint16_t>(gaps[i].part);
+    row.kept.other = static_cast<std::uint16_t>(gaps[i].other);
+    row.kept.body = static_cast<std::uint16_t>(body);
+    row.kept.is_clear = 1;
+    row.at = gaps[i].at;
+    row.at_other = gaps[i].at_other;
+    row.gap = gaps[i].distance;
+    row.normal = (1 / row.gap) * (row.at - row.at_other);
+    if (keep(spaces_of(response, response.world.data, frame, row.kept), row)) {
+      response.rows[response.row_count++] = row;
+    }
+  }
+  return done();
+}
+
 // The last rows as the detector takes them: it measures along their normals where that is no detour.
 std::size_t list_previous(sc_response& response, std::size_t body) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < response.row_count; ++i) {
     const Row& row = response.rows[i];
-    if (row.kept.body == body) {
+    if (row.kept.body == body && row.kept.is_clear == 0) {
       sc_penetration& last = response.previous[count++];
       last = {};
       last.part = row.kept.part;
@@ -154,7 +223,7 @@ void drop_rows(sc_response& response, const sc_response_frame& frame) {
   std::uint32_t left = 0;
   for (std::size_t i = 0; i < response.row_count; ++i) {
     Row row = response.rows[i];
-    if (row.kept.unseen > 0 && row.gap < 0) {
+    if ((row.kept.unseen > 0 || row.kept.is_clear != 0) && row.gap < 0) {
       row.at_other = row.at_other + row.gap * row.normal;
       row.gap = 0;
       if (!keep(spaces_of(response, response.world.data, frame, row.kept), row)) {
@@ -230,6 +299,22 @@ Status find_rows(sc_response& response, const sc_response_frame& frame, double s
   return done();
 }
 
+void forget_gaps(sc_response& response) {
+  Row* const end = std::remove_if(response.rows, response.rows + response.row_count,
+                                  [](const Row& row) { return row.kept.is_clear != 0; });
+  response.row_count = static_cast<std::uint32_t>(end - response.rows);
+}
+
+Status find_gaps(sc_response& response, const sc_response_frame& frame) {
+  for (std::size_t body = 0; body <= frame.other_count; ++body) {
+    const Status status = take_gaps(response, frame, body);
+    if (status != SC_OK) {
+      return status;
+    }
+  }
+  return done();
+}
+
 void set_wanted(sc_response& response, const sc_response_frame& frame) {
   const double ease = kEase * response.height;
   for (std::size_t i = 0; i < response.row_count; ++i) {
@@ -237,6 +322,10 @@ void set_wanted(sc_response& response, const sc_response_frame& frame) {
     Row animated = row;
     carry(spaces_of(response, response.animated.data, frame, row.kept), response.height, animated);
     // A parabola leads from nothing, where the animation is clear by `ease`, to all that it lacks.
+    if (row.kept.is_clear != 0) {
+      row.wanted = std::min(animated.gap, kSlop * response.height);  // no correction may push the two into each other
+      continue;
+    }
     const double loose = kLoosen * double{row.kept.unseen},
                  least = (kSlop - loose) * response.height - double{row.kept.allowed}, lacks = least - animated.gap,
                  eased = lacks <= -ease  ? 0
@@ -249,7 +338,8 @@ void set_wanted(sc_response& response, const sc_response_frame& frame) {
 double most_lacking(const sc_response& response) {
   double most = 0;
   for (std::size_t i = 0; i < response.row_count; ++i) {
-    most = std::max(most, response.rows[i].wanted - response.rows[i].gap);
+    const Row& row = response.rows[i];
+    most = row.kept.is_clear != 0 ? most : std::max(most, row.wanted - row.gap);
   }
   return most;
 }

@@ -28,6 +28,7 @@ std::size_t lay_out(sc_response& response, std::size_t joints, std::uint64_t* wo
   memory.take(response.turning_of_part, parts);
   memory.take(response.part_pairs, words_for(parts * parts));
   memory.take(response.resting_parts, words_for(parts));
+  memory.take(response.apart_pairs, words_for(parts * kMaxPartCount));
   memory.take(response.joints, joints);
   memory.take(response.animated, joints);
   memory.take(response.world, joints);
@@ -149,7 +150,7 @@ void find_arms(sc_response& response) {
       if (joint.joint == elbow) {
         joint.above = shoulder;
         joint.below = wrist;
-        joint.hinge = hinge_at_rest(response, joint);
+        joint.hinge = joint.is_given ? joint.hinge : hinge_at_rest(response, joint);
       }
     }
   }
@@ -198,6 +199,15 @@ Status fill(sc_response& response, const sc_response_def& def) {
   }
   if (!add_all_turning(response, def)) {
     return refuse(SC_BAD_VALUE, SC_FIELD_JOINTS);
+  }
+  for (std::size_t t = 0; t < response.turning_count && def.hinges != nullptr; ++t) {
+    TurningJoint& joint = response.turning[t];
+    joint.is_given = true;
+    joint.hinge = to_double(def.hinges[joint.joint]);
+    if (!std::isfinite(dot(joint.hinge, joint.hinge))) {
+      return refuse(SC_BAD_VALUE, SC_FIELD_JOINTS);
+    }
+    normalize(joint.hinge);
   }
   find_arms(response);
   find_pairs(response, def);

@@ -10,6 +10,7 @@ namespace {
 constexpr std::size_t kSweeps = 40;
 constexpr double kRoundMost = 0.4;   // radians that a joint turns in a round
 constexpr double kOffHinge = 0.25;   // of an elbow's mobility, about other axes than its own
+constexpr double kDirectionOff = 7;  // so many radians that a planted joint is turned count as a height
 constexpr double kStraight = 0.1;    // the sine of a bend below which an elbow's axis is taken from the rest pose
 constexpr double kKeepsWrist = 100;  // how dear it is to move the wrist by a metre of a human, against a radian
 
@@ -30,13 +31,16 @@ Affine turning_axes(const sc_response& response, const Affine* world, std::size_
 
 // How an elbow bends as animated, in its parent's axes.
 struct Bend {
-  Double3 axis{0, 0, 0};  // about which it bends further; zero: not known
-  double tangent = 0;     // of half of its angle
+  Double3 axis{0, 0, 0};      // about which it bends further; zero: not known
+  double tangent = HUGE_VAL;  // of half of its angle; HUGE_VAL: it may bend backward
 };
 
 Bend bend_of(const sc_response& response, std::size_t turning) {
   const TurningJoint& joint = response.turning[turning];
   Bend out;
+  if (joint.is_given) {
+    out.axis = joint.hinge;
+  }
   if (joint.above == SC_NO_JOINT || joint.below == SC_NO_JOINT) {
     return out;
   }
@@ -49,6 +53,10 @@ Bend bend_of(const sc_response& response, std::size_t turning) {
   const Double3 across = into(turning_axes(response, at.data, turning), cross(upper, lower));
   const double sine = length(across);
   out.tangent = sine / std::max(1 + dot(upper, lower), 1e-3);
+  if (joint.is_given) {
+    out.tangent = dot(across, joint.hinge) > 0 ? out.tangent : HUGE_VAL;
+    return out;
+  }
   out.axis = across + std::max(kStraight - sine, 0.0) * joint.hinge;
   if (sine < kStraight && dot(joint.hinge, joint.hinge) == 0) {
     return Bend{};
@@ -155,25 +163,125 @@ void find_opening(const sc_response& response, const Joints& joints, Row& row) {
   }
 }
 
+// A joint that stays where it is animated: the world's axes, and where it turns itself about them, too.
+struct Pin {
+  Double3 opens[6][kTurningMost], turns[6][kTurningMost];
+  double wanted[6];
+  std::size_t count;
+};
+
+// Rows that joints open less than so much, squared, cannot be pulled on.
+double least_pull(const sc_response& response) { return 1e-9 * response.height * response.height; }
+
+bool hangs_on(const sc_response& response, std::uint32_t joint, std::uint32_t above) {
+  while (joint != SC_NO_JOINT && joint != above) {
+    joint = response.parents[joint];
+  }
+  return joint == above;
+}
+
+// Half the turn between two sets of axes, for small turns the whole.
+Double3 turn_between(const Affine& from, const Affine& to) {
+  Double3 sum{0, 0, 0};
+  for (std::size_t k = 0; k < 3; ++k) {
+    sum = sum + cross({from.m[0][k], from.m[1][k], from.m[2][k]}, {to.m[0][k], to.m[1][k], to.m[2][k]});
+  }
+  return 0.5 * sum;
+}
+
+void set_pin(const sc_response& response, const Joints& joints, std::uint32_t planted, Pin& pin) {
+  const Affine &now = response.world[planted], &animated = response.animated[planted];
+  const Double3 off = place_of(animated) - place_of(now), turned = turn_between(axes_of(now), axes_of(animated));
+  const double wanted[] = {off.x, off.y, off.z, turned.x, turned.y, turned.z};
+  std::copy_n(wanted, 6, pin.wanted);
+  pin.count = 3;
+  for (std::size_t t = 0; t < response.turning_count; ++t) {
+    const TurningJoint& joint = response.turning[t];
+    const bool is_above = hangs_on(response, planted, joint.joint);
+    pin.count = joint.joint == planted ? 6 : pin.count;
+    const Double3 lever = place_of(now) - place_of(response.world[joint.joint]);
+    for (std::size_t k = 0; k < 6; ++k) {
+      const Double3 axis{k % 3 == 0 ? 1.0 : 0.0, k % 3 == 1 ? 1.0 : 0.0, k % 3 == 2 ? 1.0 : 0.0};
+      const Double3 moves = !is_above ? Double3{0, 0, 0} : k < 3 ? cross(lever, axis) : axis;
+      pin.opens[k][t] = into(joints.axes[t], moves);
+      pin.turns[k][t] = joint.joint == planted ? pin.opens[k][t] : eased(joint, joints.hinge[t], pin.opens[k][t]);
+    }
+  }
+}
+
+// Pulls on one row of joints until they open it as wanted. Gives how hard.
+double pull_on(std::size_t count, const Double3* opens, const Double3* turns, double wanted, double least_by,
+               double at_least, Double3* change) {
+  double opened = 0, by_pull = 0;
+  for (std::size_t t = 0; t < count; ++t) {
+    opened += dot(opens[t], change[t]);
+    by_pull += dot(opens[t], turns[t]);
+  }
+  if (!(by_pull > least_by)) {
+    return 0;
+  }
+  const double more = std::max(at_least, (wanted - opened) / by_pull);
+  for (std::size_t t = 0; t < count; ++t) {
+    change[t] = change[t] + more * turns[t];
+  }
+  return more;
+}
+
 Double3 shortened(const Double3& of, double most) {
   const double size = length(of);
   return size > most ? (most / size) * of : of;
+}
+
+// Gathers the joints in the pose of response.world.
+Joints joints_of(const sc_response& response) {
+  Joints out;
+  for (std::size_t t = 0; t < response.turning_count; ++t) {
+    const TurningJoint& joint = response.turning[t];
+    out.axes[t] = turning_axes(response, response.world.data, t);
+    out.hinge[t] = bend_of(response, t).axis;
+    out.lever[t] =
+        joint.wrist == SC_NO_JOINT
+            ? Double3{0, 0, 0}
+            : into(out.axes[t], place_of(response.world[joint.wrist]) - place_of(response.world[joint.joint]));
+  }
+  return out;
+}
+
+struct Pins {
+  Pin list[kPlantedMost];
+  std::size_t count;
+
+  Pins(const sc_response& response, const Joints& joints) : count(response.planted_count) {
+    for (std::size_t p = 0; p < count; ++p) {
+      set_pin(response, joints, response.planted[p], list[p]);
+    }
+  }
+  void pull(const sc_response& response, Double3* change) const {
+    for (std::size_t p = 0; p < count; ++p) {
+      for (std::size_t k = 0; k < list[p].count; ++k) {
+        pull_on(response.turning_count, list[p].opens[k], list[p].turns[k], list[p].wanted[k],
+                k < 3 ? least_pull(response) : 1e-9, -HUGE_VAL, change);
+      }
+    }
+  }
+};
+
+void add_change(const sc_response& response, const Double3* change, Double3* turns) {
+  for (std::size_t t = 0; t < response.turning_count; ++t) {
+    if (std::isfinite(dot(change[t], change[t]))) {  // in some poses squares are not
+      turns[t] = vector_of(product(turn_of(shortened(change[t], kRoundMost)), turn_of(turns[t])));
+    }
+  }
 }
 
 }  // namespace
 
 void solve_rows(sc_response& response, const Double3* rest, Double3* turns) {
   const std::size_t count = response.turning_count;
-  Joints joints;
+  const Joints joints = joints_of(response);
+  const Pins pins(response, joints);
   Double3 change[kTurningMost];
   for (std::size_t t = 0; t < count; ++t) {
-    const TurningJoint& joint = response.turning[t];
-    joints.axes[t] = turning_axes(response, response.world.data, t);
-    joints.hinge[t] = bend_of(response, t).axis;
-    joints.lever[t] =
-        joint.wrist == SC_NO_JOINT
-            ? Double3{0, 0, 0}
-            : into(joints.axes[t], place_of(response.world[joint.wrist]) - place_of(response.world[joint.joint]));
     change[t] = rest[t] - turns[t];
   }
   for (std::size_t i = 0; i < response.row_count; ++i) {
@@ -185,27 +293,34 @@ void solve_rows(sc_response& response, const Double3* rest, Double3* turns) {
   for (std::size_t sweep = 0; sweep < kSweeps; ++sweep) {
     for (std::size_t i = 0; i < response.row_count; ++i) {
       Row& row = response.rows[i];
-      double opened = 0, by_pull = 0;
-      for (std::size_t t = 0; t < count; ++t) {
-        opened += dot(row.opens[t], change[t]);
-        by_pull += dot(row.opens[t], row.turns[t]);
-      }
-      if (!(by_pull > 1e-9 * response.height * response.height)) {
-        continue;
-      }
-      const double pull = std::max(0.0, row.pull + (row.wanted - row.gap - opened) / by_pull), more = pull - row.pull;
-      row.pull = pull;
-      for (std::size_t t = 0; t < count; ++t) {
-        change[t] = change[t] + more * row.turns[t];
-      }
+      row.pull += pull_on(count, row.opens, row.turns, row.wanted - row.gap, least_pull(response), -row.pull, change);
     }
+    pins.pull(response, change);
   }
-  for (std::size_t t = 0; t < count; ++t) {
-    if (!std::isfinite(dot(change[t], change[t]))) {
-      continue;  // in a pose whose squares are not finite
-    }
-    turns[t] = vector_of(product(turn_of(shortened(change[t], kRoundMost)), turn_of(turns[t])));
+  add_change(response, change, turns);
+}
+
+void solve_planted(const sc_response& response, Double3* turns) {
+  const Joints joints = joints_of(response);
+  const Pins pins(response, joints);
+  Double3 change[kTurningMost] = {};
+  for (std::size_t sweep = 0; sweep < kSweeps; ++sweep) {
+    pins.pull(response, change);
   }
+  add_change(response, change, turns);
+}
+
+double off_planted(const sc_response& response) {
+  double most = 0;
+  for (std::size_t p = 0; p < response.planted_count; ++p) {
+    const std::uint32_t joint = response.planted[p];
+    const Affine &now = response.world[joint], &animated = response.animated[joint];
+    most = std::max(most, length(place_of(animated) - place_of(now)) / response.height);
+    const bool turns = std::any_of(response.turning, response.turning + response.turning_count,
+                                   [&](const TurningJoint& t) { return t.joint == joint; });
+    most = turns ? std::max(most, length(turn_between(axes_of(now), axes_of(animated))) / kDirectionOff) : most;
+  }
+  return most;
 }
 
 std::uint32_t limit_turns(const sc_response& response, Double3* turns) {

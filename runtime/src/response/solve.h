@@ -10,6 +10,11 @@ namespace spherechain {
 // lets them.
 void solve_rows(sc_response& response, const Double3* rest, Double3* turns);
 
+// Turns the joints so that planted ones come nearer to where they are animated.
+void solve_planted(const sc_response& response, Double3* turns);
+// How far planted joints are from there in response.world, as a share of the height.
+double off_planted(const sc_response& response);
+
 // Keeps turns within the joints' budgets, and bent elbows from bending backward. The number of joints that wanted more.
 std::uint32_t limit_turns(const sc_response& response, Double3* turns);
 

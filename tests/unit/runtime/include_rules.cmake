@@ -3,7 +3,7 @@
 # not have, and on an import that a folder of the page must not have.
 
 # The folders of the runtime and of the baker. Each may include those before it and itself.
-set(rooms base simd asset pose refit pairs triangles skin clusters contacts depth inside penetrations step bodies response crowd)
+set(rooms base simd asset pose refit pairs triangles skin clusters contacts depth gaps inside penetrations step bodies response crowd)
 set(room_size 15)  # files
 set(stages mesh os import roles segment wrap fit chains rig bind edits clusters layers write calibrate pipeline motion play volumes filter mask truth report events
   page check fix export cli)

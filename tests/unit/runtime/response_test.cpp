@@ -23,6 +23,17 @@ constexpr double kBudget = 1.05, kFastest = 8;  // radians, and a second
 
 using Joints = std::vector<Transform>;
 
+Vec3 turned(const float (&q)[4], const Vec3& v) {
+  const double w = double{q[3]}, x = double{q[0]}, y = double{q[1]}, z = double{q[2]},
+               n = 2 / (w * w + x * x + y * y + z * z);
+  const double cx = y * v.z - z * v.y, cy = z * v.x - x * v.z, cz = x * v.y - y * v.x;
+  return {static_cast<float>(v.x + n * (w * cx + y * cz - z * cy)),
+          static_cast<float>(v.y + n * (w * cy + z * cx - x * cz)),
+          static_cast<float>(v.z + n * (w * cz + x * cy - y * cx))};
+}
+
+double distance(const Vec3& l, const Vec3& r) { return double{std::hypot(l.x - r.x, l.y - r.y, l.z - r.z)}; }
+
 struct Played {
   Doll doll{DOLL_FOLDER, "doll.sphc"};
   Model model{doll.bytes.data(), 8 * doll.bytes.size(), nullptr, 0, SC_ROWS_3X4};
@@ -64,20 +75,11 @@ struct Played {
     while (name != view_of(doll.asset).joint(out).name) ++out;
     return out;
   }
-  // How deep arms are at fault beyond the rule, found in another way than the response finds it.
-  double fault_depth(const Joints& joints) {
+  // The joints in the world, rotations not of unit length.
+  std::vector<Transform> world_of(const Joints& joints) const {
     std::vector<Transform> world;
-    std::vector<float> bones;
     for (std::size_t j = 0; j < joints.size(); ++j) {
       const Transform& own = joints[j];
-      const auto turned = [](const float(&q)[4], const Vec3& v) {
-        const double w = double{q[3]}, x = double{q[0]}, y = double{q[1]}, z = double{q[2]},
-                     n = 2 / (w * w + x * x + y * y + z * z);
-        const double cx = y * v.z - z * v.y, cy = z * v.x - x * v.z, cz = x * v.y - y * v.x;
-        return Vec3{static_cast<float>(v.x + n * (w * cx + y * cz - z * cy)),
-                    static_cast<float>(v.y + n * (w * cy + z * cx - x * cz)),
-                    static_cast<float>(v.z + n * (w * cz + x * cy - y * cx))};
-      };
       Transform here = own;
       if (parents[j] != SC_NO_JOINT) {
         const Transform& above = world[parents[j]];
@@ -91,6 +93,15 @@ struct Played {
         here.rotation[3] = a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2];
       }
       world.push_back(here);
+    }
+    return world;
+  }
+  // How deep arms are at fault beyond the rule, found in another way than the response finds it.
+  double fault_depth(const Joints& joints) {
+    std::vector<float> bones;
+    const std::vector<Transform> world = world_of(joints);
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      const Transform& here = world[j];
       const Vec3 rest = view_of(doll.asset).joint(j).position, from = turned(here.rotation, rest);
       const Vec3 axes[] = {turned(here.rotation, {1, 0, 0}), turned(here.rotation, {0, 1, 0}),
                            turned(here.rotation, {0, 0, 1})};
@@ -208,6 +219,66 @@ TEST_CASE("a bent elbow does not bend backward") {
   }
 }
 
+TEST_CASE("planted hands stay where they are animated, and the arms still leave the body") {
+  Played played;
+  const std::uint32_t wrists[] = {static_cast<std::uint32_t>(played.joint("left_wrist")),
+                                  static_cast<std::uint32_t>(played.joint("right_wrist"))};
+  const double height = double{played.model.info().height};
+  double moved[2] = {};  // without and with: the largest
+  int cleared = 0;
+  for (const bool are_planted : {false, true}) {
+    played.state = {};
+    played.frame.planted = wrists;
+    played.frame.planted_count = are_planted ? 2 : 0;
+    for (std::size_t f = 0; f < kFrames; ++f) {
+      const Joints animated = played.at(f);
+      Joints joints = animated;
+      REQUIRE(played.respond(joints) == SC_OK);
+      const std::vector<Transform> was = played.world_of(animated), is = played.world_of(joints);
+      for (const std::uint32_t wrist : wrists) {
+        double& most = moved[are_planted ? 1 : 0];
+        most = std::max(most, distance(was[wrist].translation, is[wrist].translation) / height);
+      }
+      cleared += are_planted && played.fault_depth(animated) > 0 && !(played.fault_depth(joints) > 0) ? 1 : 0;
+    }
+  }
+  CHECK(moved[0] > 0.05);
+  CHECK(moved[1] < 0.003);
+  CHECK(cleared > 5);
+}
+
+TEST_CASE("an elbow that has a hinge turns about it") {
+  Played played;
+  const std::size_t elbow = played.joint("left_elbow");
+  double along_y[2] = {};  // shares of the turns
+  for (const bool is_given : {false, true}) {
+    std::vector<Vec3> hinges(played.parents.size());
+    hinges[elbow] = {1, 0, 0};
+    ResponseDef def = played.def();
+    def.hinges = is_given ? hinges.data() : nullptr;
+    Response response(played.body, def);
+    REQUIRE(response);
+    ResponseState state;
+    double sum = 0;
+    for (std::size_t f = 0; f < kFrames; ++f) {
+      const Joints animated = played.at(f);
+      Joints joints = animated;
+      played.frame.joints = joints.data();
+      REQUIRE(response.respond(state, played.frame) == SC_OK);
+      // The turn is the corrected rotation times the inverse of the animated one.
+      const float *a = joints[elbow].rotation, *b = animated[elbow].rotation;
+      const double x = double{a[0] * b[3] - a[3] * b[0] + a[2] * b[1] - a[1] * b[2]},
+                   y = double{a[1] * b[3] - a[3] * b[1] + a[0] * b[2] - a[2] * b[0]},
+                   z = double{a[2] * b[3] - a[3] * b[2] + a[1] * b[0] - a[0] * b[1]};
+      along_y[is_given ? 1 : 0] += std::abs(y);
+      sum += std::abs(x) + std::abs(y) + std::abs(z);
+    }
+    REQUIRE(sum > 0);
+    along_y[is_given ? 1 : 0] /= sum;
+  }
+  CHECK(along_y[1] < 0.7 * along_y[0]);
+}
+
 TEST_CASE("a copy of the state replays the same on every target, and nothing is allocated") {
   Played played;
   ResponseState kept;
@@ -281,6 +352,55 @@ TEST_CASE("a row's gap follows its joints as its normal says") {
   CHECK(looked_at > 100);
 }
 
+TEST_CASE("a gap is a row: closed by so much, the two touch, and by less they do not") {
+  Played played, other;
+  const float height = played.model.info().height;
+  Joints rest = played.at(0);
+  std::vector<float> bones;
+  for (Transform& joint : rest) {
+    std::copy_n(std::vector<float>{0, 0, 0, 1}.data(), 4, joint.rotation);
+    bones.insert(bones.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
+  }
+  Pose pose;
+  pose.bones = bones.data();
+  pose.bone_count = rest.size();
+  pose.bone_layout = SC_ROWS_3X4;
+  const sc_body* const others[] = {other.body.handle()};
+  played.frame.others = others;
+  played.frame.other_count = 1;
+  played.frame.weakness = 1;
+  std::size_t looked_at = 0;
+  for (int step = 0; step < 60; ++step) {  // the other comes from behind
+    Transform place{{0.45F * height, 0, (0.3F - 0.005F * static_cast<float>(step)) * height}, {0, 0, 0, 1}, {1, 1, 1}};
+    REQUIRE(other.body.set_pose(pose, place) == SC_OK);
+    Joints joints = rest;
+    REQUIRE(played.respond(joints) == SC_OK);
+    const std::vector<ContactRow> rows(played.frame.rows, played.frame.rows + played.frame.row_count);
+    for (const ContactRow& row : rows) {
+      const bool is_narrowest = std::none_of(rows.begin(), rows.end(), [&](const ContactRow& l) {
+        return l.part == row.part && l.other == row.other && l.gap < row.gap;
+      });
+      if (row.body != 1 || row.gap <= 0 || row.allowed > 0 || !is_narrowest) continue;
+      for (const float share : {0.98F, 1.02F}) {
+        const Transform closer{
+            {place.translation.x + share * row.gap * row.normal.x, place.translation.y + share * row.gap * row.normal.y,
+             place.translation.z + share * row.gap * row.normal.z},
+            {0, 0, 0, 1},
+            {1, 1, 1}};
+        REQUIRE(played.looker.set_pose(pose) == SC_OK);
+        REQUIRE(other.looker.set_pose(pose, closer) == SC_OK);
+        const Contacts found = played.looker.contacts(other.looker);
+        const bool meet = std::any_of(found.parts, found.parts + found.part_count, [&](const PartContact& parts) {
+          return parts.part_a == row.part && parts.part_b == row.other;
+        });
+        CHECK(meet == (share > 1));
+      }
+      ++looked_at;
+    }
+  }
+  CHECK(looked_at > 3);
+}
+
 TEST_CASE("a hand stays out of another character and of the ground") {
   Played played, other;
   Joints rest = played.at(0);  // arms out to the sides
@@ -294,7 +414,7 @@ TEST_CASE("a hand stays out of another character and of the ground") {
   pose.bone_count = rest.size();
   pose.bone_layout = SC_ROWS_3X4;
   const float height = played.model.info().height;
-  const Transform place{{0.45F * height, 0, 0.07F * height}, {0, 0, 0, 1}, {1, 1, 1}};  // behind the left forearm
+  const Transform place{{0.45F * height, 0, 0.085F * height}, {0, 0, 0, 1}, {1, 1, 1}};  // behind the left forearm
   REQUIRE(other.body.set_pose(pose, place) == SC_OK);
   const sc_body* const others[] = {other.body.handle()};
   Ground ground;
