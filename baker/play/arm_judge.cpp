@@ -29,6 +29,14 @@ double percentile(std::vector<double> values, double share) {
   return values[std::min(static_cast<std::size_t>(share * static_cast<double>(values.size())), values.size() - 1)];
 }
 
+// Does the last value but one stand out from its neighbours?
+bool is_flicker(const std::vector<double>& shifts) {
+  if (shifts.size() < 3) return false;
+  const double* const last = &shifts.back();
+  const double from = last[-1] - last[-2], to = last[-1] - last[0];
+  return (from > kMoved && to > kMoved) || (from < -kMoved && to < -kMoved);
+}
+
 }  // namespace
 
 ArmJudge::ArmJudge(const AnimatedAsset& animated, Target target)
@@ -91,7 +99,8 @@ ResponseMeasures ResponseTally::measures() const {
   ResponseMeasures out;
   std::vector<double> depths, times;
   int without = 0, moved = 0;
-  double sums[2][2] = {};  // wrists and elbows, before and after
+  std::vector<std::vector<double>> shifts;  // of each wrist, frame by frame of a clip
+  double sums[2][2] = {};                   // wrists and elbows, before and after
   std::vector<std::vector<Vec3>> tracks[2][2];
   const auto end_clip = [&] {
     for (int end = 0; end < 2; ++end) {
@@ -110,12 +119,17 @@ ResponseMeasures ResponseTally::measures() const {
     depths.push_back(frame.depth / height_);
     times.push_back(frame.us);
     out.us_mean += frame.us / static_cast<double>(frames_.size());
+    if (frame.starts_clip) shifts.assign(frame.ends[0][0].size(), {});
     double farthest = 0;
+    bool has_flickered = false;  // in the frame before
     for (std::size_t w = 0; w < frame.ends[0][0].size(); ++w) {
-      farthest = std::max(farthest, (frame.ends[0][1][w] - frame.ends[0][0][w]).norm());
+      shifts[w].push_back((frame.ends[0][1][w] - frame.ends[0][0][w]).norm() / height_);
+      farthest = std::max(farthest, shifts[w].back());
+      has_flickered = has_flickered || is_flicker(shifts[w]);
     }
+    out.flickers += has_flickered ? 1 : 0;
     without += frame.is_faulty_before ? 0 : 1;
-    moved += !frame.is_faulty_before && farthest > kMoved * height_ ? 1 : 0;
+    moved += !frame.is_faulty_before && farthest > kMoved ? 1 : 0;
     for (int end = 0; end < 2; ++end) {
       for (std::size_t p = 0; p < frame.ends[end][0].size() && !tracks[end][0].empty(); ++p) {
         const double step = (frame.ends[end][0][p] - tracks[end][0].back()[p]).norm(),

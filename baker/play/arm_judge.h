@@ -17,7 +17,9 @@ struct ResponseMeasures {
   double elbow_acceleration = 1;
   double largest_jump = 0;         // beyond the animation's, of a wrist or an elbow from frame to frame
   double moved_without_fault = 0;  // of the frames without a fault the share where a wrist moves by .3 %
-  double residual_p95 = 0;         // depth of the deepest fault
+  // Frames in which a wrist's correction peaks or dips, by .3 % against the frame before and after.
+  int flickers = 0;
+  double residual_p95 = 0;  // depth of the deepest fault
   double us_mean = 0, us_p99 = 0;
 };
 

@@ -12,7 +12,9 @@ namespace {
 
 constexpr int kRounds = 4, kSweeps = 40;
 constexpr double kRelease = 0.03, kFastest = 8, kBudget = 1.05, kRoundMost = 0.4, kOffHinge = 0.25;
-constexpr double kEase = 0.005 / 1.75, kSlop = 0.001 / 1.75;  // shares of the height
+// Shares of the height. A row whose lever is no longer than `kSoft`, near a shoulder, gives way: else it would fling
+// the arm.
+constexpr double kEase = 0.005 / 1.75, kSlop = 0.001 / 1.75, kSoft = 0.025;
 
 Vec3 shortened(const Vec3& v, double most) { return v.norm() > most ? Vec3(most / v.norm() * v) : v; }
 
@@ -174,7 +176,7 @@ void CapsuleResponse::find_rows(const std::vector<Affine>& world) {
   }
 }
 
-// The smallest turns, from `rest` on, that open the rows: Gauss and Seidel's way, as in sc_respond.
+// The smallest turns, from `rest` on, that open the rows: by Gauss-Seidel, as sc_respond does.
 void CapsuleResponse::solve(const std::vector<Affine>& world, const std::vector<Vec3>& rest) {
   std::vector<Vec3> change(turning_.size());
   std::vector<Eigen::Matrix3d> axes(turning_.size(), Eigen::Matrix3d::Identity());
@@ -183,6 +185,7 @@ void CapsuleResponse::solve(const std::vector<Affine>& world, const std::vector<
     if (parent != SC_NO_JOINT) axes[t] = axes_of(world[parent]);
     change[t] = axes[t] * (rest[t] - turning_[t].turn);
   }
+  const double soft = kSoft * kSoft * height_ * height_;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (Row& row : rows_) {
       double opened = 0, by_pull = 0;
@@ -190,8 +193,8 @@ void CapsuleResponse::solve(const std::vector<Affine>& world, const std::vector<
         opened += row.opens[t].dot(change[t]);
         by_pull += row.opens[t].dot(row.turns[t]);
       }
-      if (!(by_pull > 1e-9 * height_ * height_)) continue;
-      const double pull = std::max(0.0, row.pull + (row.wanted - row.gap - opened) / by_pull);
+      const double lacks = row.wanted - row.gap - opened - soft * row.pull,
+                   pull = std::max(0.0, row.pull + lacks / (by_pull + soft));
       for (std::size_t t = 0; t < turning_.size(); ++t) change[t] += (pull - row.pull) * row.turns[t];
       row.pull = pull;
     }

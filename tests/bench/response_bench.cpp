@@ -22,8 +22,8 @@ namespace {
 constexpr double kHuman = 1750;  // millimetres
 
 void print(const std::string& name, const baker::ResponseMeasures& of) {
-  fmt::print("{:10} {:8} {:6} {:6.2f} {:6.2f} {:8.0f} {:9.1f} {:9.1f} {:8.0f} {:8.0f}\n", name, of.faulty_after,
-             of.new_faults, of.wrist_acceleration, of.elbow_acceleration, kHuman * of.largest_jump,
+  fmt::print("{:10} {:8} {:6} {:6.2f} {:6.2f} {:8.0f} {:8} {:9.1f} {:9.1f} {:8.0f} {:8.0f}\n", name, of.faulty_after,
+             of.new_faults, of.wrist_acceleration, of.elbow_acceleration, kHuman * of.largest_jump, of.flickers,
              100 * of.moved_without_fault, kHuman * of.residual_p95, of.us_mean, of.us_p99);
 }
 
@@ -48,8 +48,8 @@ void run(const char* asset, const char* source, double fps, double seconds) {
   }
   const baker::ResponseMeasures measures = as_animated.measures();
   fmt::print("{}: {} frames at {:g} a second\n", std::filesystem::path(source).stem().string(), measures.frames, fps);
-  fmt::print("{:10} {:>8} {:>6} {:>6} {:>6} {:>8} {:>9} {:>9} {:>8} {:>8}\n", "", "faulty", "new", "wrist", "elbow",
-             "jump mm", "moved %", "p95 mm", "us", "p99");
+  fmt::print("{:10} {:>8} {:>6} {:>6} {:>6} {:>8} {:>8} {:>9} {:>9} {:>8} {:>8}\n", "", "faulty", "new", "wrist",
+             "elbow", "jump mm", "flickers", "moved %", "p95 mm", "us", "p99");
   print("animated", measures);
   print("response", by_response.measures());
   print("capsules", by_capsules.measures());
@@ -72,6 +72,7 @@ int main(int argc, char** argv) try {
   }
   if (files.empty() || files.size() % 2 != 0) throw std::runtime_error("pass pairs of ASSET SOURCE");
   fmt::print("{}\n\n", bench::machine());
+  std::fflush(stdout);
   for (std::size_t i = 0; i < files.size(); i += 2) run(files[i], files[i + 1], fps, seconds);
   return 0;
 } catch (const std::exception& e) {
