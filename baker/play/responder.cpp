@@ -18,7 +18,7 @@ Responder::Responder(const AnimatedAsset& animated, Target target, int ahead)
       target_(target),
       ahead_(ahead),
       joints_(animated),
-      judge_(animated, target),
+      meter_(animated, target),
       tally_(animated.frame().height) {
   body_ = Body(animated.asset().model());
   check_runtime(body_.status());
@@ -85,8 +85,8 @@ Responder::Corrected Responder::correct(int frame) {
 
 Deformation Responder::respond(int frame) {
   Corrected made = correct(frame);
-  const ArmPose before = judge_.look_at(made.animated);
-  tally_.add(before, made.is_turned ? judge_.look_at(made.corrected) : before, made.us, made.starts_clip);
+  const ArmPose before = meter_.look_at(made.animated);
+  tally_.add(before, made.is_turned ? meter_.look_at(made.corrected) : before, made.us, made.starts_clip);
   return std::move(made.corrected);
 }
 

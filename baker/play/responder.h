@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "baker/play/arm_judge.h"
+#include "baker/play/arm_meter.h"
 #include "baker/play/bone_joints.h"
 #include "spherechain/response.h"
 
@@ -36,7 +36,7 @@ class Responder {
   Target target_;
   int ahead_;
   BoneJoints joints_;
-  ArmJudge judge_;
+  ArmMeter meter_;
   ResponseTally tally_;
   Body body_;
   Response response_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // spherechain_bench_response [--each] [--fps N] [--seconds S] ASSET SOURCE [ASSET SOURCE ...]: characters as animated,
-// by sc_respond and by capsules, in one run. All are judged by penetrations in full, as `play --respond` does. `--each`
-// prints every frame, too.
+// by sc_respond and by capsules, in one run. All are measured by penetrations in full, as `play --respond` does.
+// `--each` prints every frame, too.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -89,7 +89,7 @@ Row run(const char* asset, const char* source, const Choice& choice) {
   const Target target = baker::choose_target("auto");
   baker::Responder responder(animated, target, 0);
   bench::CapsuleResponse capsules(animated);
-  baker::ArmJudge judge(animated, target);
+  baker::ArmMeter meter(animated, target);
   const double height = animated.frame().height;
   baker::ResponseTally as_animated(height), by_response(height), by_capsules(height);
   for (int f = 0; f < animated.frame_count() && f < choice.seconds * choice.fps; ++f) {
@@ -97,10 +97,10 @@ Row run(const char* asset, const char* source, const Choice& choice) {
     const bool starts = response.starts_clip;
     const double passed = starts ? 0 : animated.frame_at(f).seconds - animated.frame_at(f - 1).seconds;
     const bench::CapsuleResponse::Corrected pushed = capsules.correct(response.animated, passed, starts);
-    const baker::ArmPose before = judge.look_at(response.animated);
+    const baker::ArmPose before = meter.look_at(response.animated);
     as_animated.add(before, before, 0, starts);
-    const baker::ArmPose turned = response.is_turned ? judge.look_at(response.corrected) : before;
-    const baker::ArmPose apart = judge.look_at(pushed.pose);
+    const baker::ArmPose turned = response.is_turned ? meter.look_at(response.corrected) : before;
+    const baker::ArmPose apart = meter.look_at(pushed.pose);
     by_response.add(before, turned, response.us, starts);
     by_capsules.add(before, apart, pushed.us, starts);
     if (choice.each) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "baker/play/arm_judge.h"
+#include "baker/play/arm_meter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +39,7 @@ bool is_flicker(const std::vector<double>& shifts) {
 
 }  // namespace
 
-ArmJudge::ArmJudge(const AnimatedAsset& animated, Target target)
+ArmMeter::ArmMeter(const AnimatedAsset& animated, Target target)
     : animated_(animated), joints_(animated), skin_(animated.asset(), target) {
   const OpenAsset& asset = animated.asset();
   if (asset->bone_count() == 0 || animated.bone_names().empty()) {
@@ -61,7 +61,7 @@ ArmJudge::ArmJudge(const AnimatedAsset& animated, Target target)
   }
 }
 
-ArmPose ArmJudge::look_at(const Deformation& deformation) {
+ArmPose ArmMeter::look_at(const Deformation& deformation) {
   const BonePose pose(animated_.asset(), deformation);
   skin_.set_pose(pose.pose());
   ArmPose out;

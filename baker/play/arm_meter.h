@@ -30,10 +30,10 @@ struct ArmPose {
 };
 
 // Measures the arms of a character, pose by pose, in full.
-class ArmJudge {
+class ArmMeter {
  public:
   // The asset must outlive it. Throws Error(kFile) where the asset has no arms, or where bones do not move it.
-  ArmJudge(const AnimatedAsset& animated, Target target);
+  ArmMeter(const AnimatedAsset& animated, Target target);
   ArmPose look_at(const Deformation& deformation);
 
  private:
