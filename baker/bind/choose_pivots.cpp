@@ -26,6 +26,18 @@ std::vector<Index> pick(const Mesh& mesh, const std::vector<Index>& triangles, c
   const Vec3 across = reference - reference.dot(axis) * axis;
   const Vec3 u = across.norm() > 1e-3 * reference.norm() ? across.normalized() : axis.unitOrthogonal();
   const Vec3 v = axis.cross(u);
+  // Where a triangle's centre is: along the axis in radii, and in which direction from it.
+  struct Seen {
+    Index triangle;
+    double along;
+    Vec3 direction;
+  };
+  std::vector<Seen> seen;
+  seen.reserve(triangles.size());
+  for (const Index t : triangles) {
+    const Vec3 d = triangle_centroid(mesh, t) - sphere.ball.center;
+    seen.push_back({t, d.dot(axis) / sphere.ball.radius, (d - d.dot(axis) * axis).normalized()});
+  }
   std::vector<Index> picked;
   for (int k = 0; k < pattern.count; ++k) {
     // In the middle of the k-th sector: with four, of the quadrant.
@@ -34,16 +46,13 @@ std::vector<Index> pick(const Mesh& mesh, const std::vector<Index>& triangles, c
     const double shift = (k % 2 == 0 ? 1 : -1) * pattern.stagger;
     double least = std::numeric_limits<double>::max();
     Index best = kNoIndex;
-    for (const Index t : triangles) {
-      if (std::find(picked.begin(), picked.end(), t) != picked.end()) continue;
-      const Vec3 d = triangle_centroid(mesh, t) - sphere.ball.center;
-      const double along = d.dot(axis) / sphere.ball.radius;
-      const double turned = std::acos(std::clamp((d - d.dot(axis) * axis).normalized().dot(direction), -1.0, 1.0));
-      const double cost = std::abs(along - shift) + turned;
-      if (cost < least) {
-        least = cost;
-        best = t;
-      }
+    for (const Seen& one : seen) {
+      const double off = std::abs(one.along - shift);
+      if (off >= least) continue;  // an angle only adds to it
+      const double cost = off + std::acos(std::clamp(one.direction.dot(direction), -1.0, 1.0));
+      if (!(cost < least) || std::find(picked.begin(), picked.end(), one.triangle) != picked.end()) continue;
+      least = cost;
+      best = one.triangle;
     }
     if (best == kNoIndex) break;
     picked.push_back(best);

@@ -65,22 +65,23 @@ std::vector<Moved> moved_by_tables(const spherechain::MomentTables& tables, cons
 std::vector<Moved> moved_by_skin(const Bake& bake, const BoneMatrices& pose) {
   const Character& character = bake.character;
   const std::vector<VertexWeights>& weights = character.rig.bones.empty() ? bake.rig_weights : character.rig.weights;
-  const auto vertex = [&](Index v) {
+  std::vector<Vec3> vertices;
+  for (std::size_t v = 0; v < weights.size(); ++v) {
     const Eigen::Vector4d rest = character.source_positions[v].homogeneous();
     Vec3 sum = Vec3::Zero();
     if (weights[v].weight[0] <= 0) sum = pose.back() * rest;
     for (std::size_t k = 0; k < kMaxInfluences && weights[v].weight[k] > 0; ++k) {
       sum += weights[v].weight[k] * (pose[weights[v].joint[k]] * rest);
     }
-    return sum;
-  };
+    vertices.push_back(sum);
+  }
   std::vector<Moved> out;
   for (const BoundSphere& sphere : bake.binding.spheres) {
     std::vector<Vec3> centroids;
     Moved moved{Vec3::Zero(), 0};
     for (const BoundPivot& pivot : sphere.pivots) {
       const Triangle& corners = character.source_triangles[character.skin_source_triangle[pivot.triangle]];
-      centroids.emplace_back((vertex(corners[0]) + vertex(corners[1]) + vertex(corners[2])) / 3);
+      centroids.emplace_back((vertices[corners[0]] + vertices[corners[1]] + vertices[corners[2]]) / 3);
       moved.center += pivot.weight * centroids.back();
     }
     for (const Vec3& centroid : centroids) moved.spread += (centroid - moved.center).squaredNorm();
