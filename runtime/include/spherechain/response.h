@@ -21,7 +21,7 @@ typedef struct sc_response_def {
    * about all axes alike. Null: elbows bend as they are bent at rest and in the pose. */
   const sc_vec3* hinges SC_ZERO;
   /* The pairs of body parts that are kept apart, as of sc_query. Null: those that a turn can move against each other,
-   * unless one hangs on the other. */
+   * unless one hangs on the other, or both are held by hands. */
   const uint64_t* part_pairs SC_ZERO;
   const sc_rule* rule SC_ZERO;           /* null: sc_default_rule() */
   const sc_allocator* allocator SC_ZERO; /* copied; null: the body's */

@@ -2,6 +2,7 @@
 #include "runtime/src/response/rows.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 #include "runtime/src/base/pair_bits.h"
@@ -20,6 +21,7 @@ constexpr double kBend = 0.035;                        // a skin's radius: it be
 constexpr double kGapMost = 0.008, kSlideMost = 0.05;  // of a row that is kept
 constexpr float kUnseenMost = 0.5F;                    // seconds
 constexpr double kLoosen = 0.15;                       // heights a second, by which a row that is not found gives way
+constexpr double kAgesBeside = 0.5;                    // how fast a row ages while another one of its parts is found
 constexpr double kForget = 0.07;                       // seconds, in which a larger depth is allowed again
 constexpr double kMargin = 0.0046;                     // wider gaps are no rows: 8 mm on a human
 constexpr double kAnyDepth = 10;                       // where pieces slide in each other as they like
@@ -218,12 +220,23 @@ std::size_t list_previous(sc_response& response, std::size_t body) {
   return count;
 }
 
+// Is another spot of the same two parts found in this round?
+bool is_pair_found(const sc_response& response, const Row& of) {
+  return std::any_of(response.rows, response.rows + response.row_count, [&](const Row& row) {
+    return row.kept.part == of.kept.part && row.kept.other == of.kept.other && row.kept.body == of.kept.body &&
+           row.kept.is_clear == 0 && !(row.kept.unseen > 0);
+  });
+}
+
 // Drops what is out of reach. A row that was not found does not intersect, whatever its plane says.
-void drop_rows(sc_response& response, const sc_response_frame& frame) {
+void drop_rows(sc_response& response, const sc_response_frame& frame, double seconds) {
   std::uint32_t left = 0;
   for (std::size_t i = 0; i < response.row_count; ++i) {
     Row row = response.rows[i];
-    if ((row.kept.unseen > 0 || row.kept.is_clear != 0) && row.gap < 0) {
+    if (row.kept.unseen > 0 && is_pair_found(response, row)) {
+      // A pair has one spot that is found, now here, now there: the other one gives way more slowly.
+      row.kept.unseen = std::max(row.kept.unseen - static_cast<float>((1 - kAgesBeside) * seconds), FLT_MIN);
+    } else if ((row.kept.unseen > 0 || row.kept.is_clear != 0) && row.gap < 0) {
       row.at_other = row.at_other + row.gap * row.normal;
       row.gap = 0;
       if (!keep(spaces_of(response, response.world.data, frame, row.kept), row)) {
@@ -295,7 +308,7 @@ Status find_rows(sc_response& response, const sc_response_frame& frame, double s
     }
     take_all(response, frame, found, body, seconds);
   }
-  drop_rows(response, frame);
+  drop_rows(response, frame, seconds);
   return done();
 }
 

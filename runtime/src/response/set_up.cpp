@@ -167,6 +167,12 @@ std::uint32_t turning_of(const sc_response& response, std::size_t part) {
   return out;
 }
 
+// Does the joint of this part turn?
+bool turns(const sc_response& response, std::size_t part) {
+  return std::any_of(response.turning, response.turning + response.turning_count,
+                     [&](const TurningJoint& t) { return t.joint == response.joint_of_part[part]; });
+}
+
 void find_pairs(sc_response& response, const sc_response_def& def) {
   const sc_asset& asset = response.body->model->asset;
   const std::size_t parts = response.joint_of_part.size;
@@ -181,9 +187,12 @@ void find_pairs(sc_response& response, const sc_response_def& def) {
       const auto is_asked_as = [&](std::size_t bit) { return (def.part_pairs[bit / 64] >> bit % 64 & 1) != 0; };
       const bool are_joined = sc_asset_part(&asset, a).parent == static_cast<std::int32_t>(b) ||
                               sc_asset_part(&asset, b).parent == static_cast<std::int32_t>(a);
-      const bool is_asked =
-          response.turning_of_part[a] != response.turning_of_part[b] &&
-          (def.part_pairs == nullptr ? !are_joined : is_asked_as(a * parts + b) || is_asked_as(b * parts + a));
+      // What one hand holds does not make way for what the other holds.
+      const bool are_held = !turns(response, a) && !turns(response, b) && response.turning_of_part[a] != 0 &&
+                            response.turning_of_part[b] != 0;
+      const bool is_asked = response.turning_of_part[a] != response.turning_of_part[b] &&
+                            (def.part_pairs == nullptr ? !are_joined && !are_held
+                                                       : is_asked_as(a * parts + b) || is_asked_as(b * parts + a));
       response.part_pairs[(a * parts + b) / 64] |= std::uint64_t{is_asked} << (a * parts + b) % 64;
     }
   }
