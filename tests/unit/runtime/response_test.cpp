@@ -247,15 +247,18 @@ TEST_CASE("planted hands stay where they are animated, and the arms still leave 
   CHECK(cleared > 5);
 }
 
-TEST_CASE("an elbow that has a hinge turns about it") {
+TEST_CASE("a joint that has a hinge turns about it") {
   Played played;
-  const std::size_t elbow = played.joint("left_elbow");
+  const std::size_t clavicle = played.joint("left_clavicle");
   double along_y[2] = {};  // shares of the turns
   for (const bool is_y : {false, true}) {
     std::vector<Vec3> hinges(played.parents.size());
-    hinges[elbow] = is_y ? Vec3{0, 2, 0} : Vec3{1, 0, 0};
+    hinges[clavicle] = is_y ? Vec3{0, 2, 0} : Vec3{0, 0, 1};
     ResponseDef def = played.def();
     def.hinges = hinges.data();
+    std::vector<float> mobility(hinges.size(), 0.0F);
+    mobility[clavicle] = 1;  // alone
+    def.mobility = mobility.data();
     Response response(played.body, def);
     REQUIRE(response);
     ResponseState state;
@@ -266,7 +269,7 @@ TEST_CASE("an elbow that has a hinge turns about it") {
       played.frame.joints = joints.data();
       REQUIRE(response.respond(state, played.frame) == SC_OK);
       // The turn is the corrected rotation times the inverse of the animated one.
-      const float *a = joints[elbow].rotation, *b = animated[elbow].rotation;
+      const float *a = joints[clavicle].rotation, *b = animated[clavicle].rotation;
       const double x = double{a[0] * b[3] - a[3] * b[0] + a[2] * b[1] - a[1] * b[2]},
                    y = double{a[1] * b[3] - a[3] * b[1] + a[0] * b[2] - a[2] * b[0]},
                    z = double{a[2] * b[3] - a[3] * b[2] + a[1] * b[0] - a[0] * b[1]};
