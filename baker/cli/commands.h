@@ -62,7 +62,8 @@ struct ViewOptions {
   FrameChoice frames;
   std::string radius = "detect", volumes, filter;  // empty volumes: no colliders are shown
   int at_most = 0;                                 // as for export
-  bool force = false, continuous = false;
+  bool force = false, continuous = false, respond = false;
+  int ahead = 0;  // frames
 };
 ExitCode run_view(const ViewOptions& options);
 

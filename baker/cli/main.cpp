@@ -120,6 +120,12 @@ void add_radius(CLI::App& command, std::string& radius) {
       ->capture_default_str();
 }
 
+void add_respond(CLI::App& command, bool& respond, int& ahead) {
+  CLI::Option* flag = command.add_flag(
+      "--respond", respond, "Keep hands and arms out of the body as a game does; look at the corrected motion");
+  command.add_option("--ahead", ahead, "Frames that --respond knows in advance")->check(CLI::Range(0, 3))->needs(flag);
+}
+
 // Returns --at-most.
 CLI::Option* add_volumes(CLI::App& command, std::string& volumes, int& at_most, const std::string& description) {
   CLI::Option* shape = command.add_option("--volumes", volumes, description);
@@ -197,11 +203,7 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"auto", "scalar", "simd", "cuda"}))
       ->capture_default_str();
   play_command->add_flag("--contacts", play.contacts, "List the triangles that intersect in the JSON, too");
-  CLI::Option* respond = play_command->add_flag(
-      "--respond", play.respond, "Keep hands and arms out of the body as a game does; look at the corrected motion");
-  play_command->add_option("--ahead", play.ahead, "Frames that --respond knows in advance")
-      ->check(CLI::Range(0, 3))
-      ->needs(respond);
+  add_respond(*play_command, play.respond, play.ahead);
   add_output(*play_command, "--json", play.json, "JSON file to write");
   play_command->callback([&] { run = [&] { return run_play(play); }; });
 
@@ -313,6 +315,7 @@ int main(int argc, char** argv) {
   add_motion(*view_command, view.motion, view.frames, view.continuous);
   add_with(*view_command, view.with);
   add_radius(*view_command, view.radius);
+  add_respond(*view_command, view.respond, view.ahead);
   add_volumes(*view_command, view.volumes, view.at_most, "Colliders to show, as export writes them")
       ->needs("--volumes");
   add_name(*view_command, "--filter", view.filter,

@@ -21,6 +21,7 @@
 #include "baker/report/parts.h"
 #include "baker/report/play_frames.h"
 #include "baker/report/report.h"
+#include "baker/report/response_report.h"
 #include "baker/write/version.h"
 
 namespace spherechain::baker {
@@ -76,28 +77,6 @@ class Tally {
   // Pairs of spheres; alarmed: they touch.
   std::size_t skin_ = 0, alarmed_ = 0, confirmed_ = 0;
 };
-
-ordered_json response_json(const ResponseMeasures& of) {
-  return {{"frames", of.frames},
-          {"faulty_before", of.faulty_before},
-          {"faulty_after", of.faulty_after},
-          {"new_faults", of.new_faults},
-          {"wrist_acceleration", of.wrist_acceleration},
-          {"elbow_acceleration", of.elbow_acceleration},
-          {"largest_jump_percent", 100 * of.largest_jump},
-          {"moved_without_fault", of.moved_without_fault},
-          {"residual_p95_percent", 100 * of.residual_p95},
-          {"us_mean", of.us_mean},
-          {"us_p99", of.us_p99}};
-}
-
-std::string response_text(const ResponseMeasures& of, double height_mm) {
-  return fmt::format(
-      "response: {} of {} frames had a fault of an arm, {} have one now ({} with a new one); acceleration of wrists x "
-      "{:.2f}, elbows x {:.2f}; largest jump {:.0f} mm; {:.1f} % of frames without a fault moved; {:.0f} us a frame\n",
-      of.faulty_before, of.frames, of.faulty_after, of.new_faults, of.wrist_acceleration, of.elbow_acceleration,
-      of.largest_jump * height_mm, 100 * of.moved_without_fault, of.us_mean);
-}
 
 std::string frames_text(const AnimatedAsset& animated) {
   const std::size_t clips = animated.clips().size();
@@ -173,8 +152,7 @@ ExitCode run_play(const PlayOptions& options) {
   say("{}{}\n{}\n{}(radius {}, refit {}, backend {})\n", frames_text(animated), contacts.text(options.motion.name()),
       tally.spheres_text(), tally.times_text(), options.radius, refit,
       on_cuda ? "cuda: refit and all pairs in one" : backend_text(target));
-  if (responder)
-    say("{}", response_text(responder->measures(), animated.frame().height * mm_per_unit(animated.asset())));
+  if (responder) say("{}", response_text(responder->measures(), animated));
   if (!options.json.empty()) say("wrote {}\n", options.json);
   return ExitCode::kDone;
 }

@@ -15,6 +15,8 @@
 #include "baker/page/page.h"
 #include "baker/page/page_inputs.h"
 #include "baker/page/page_of_two.h"
+#include "baker/play/target.h"
+#include "baker/report/response_report.h"
 #include "baker/volumes/fit_volumes.h"
 
 namespace spherechain::baker {
@@ -38,8 +40,9 @@ void check_with(const ViewOptions& options) {
   const WithOptions& with = options.with;
   const bool is_same = with.asset == options.asset;
   const std::string wrong =
-      options.continuous || !options.report.empty() || !options.validation.empty() || !options.volumes.empty()
-          ? "--with: a page of two shows no report, no validation, no colliders, and frames alone"
+      options.continuous || options.respond || !options.report.empty() || !options.validation.empty() ||
+              !options.volumes.empty()
+          ? "--with: a page of two shows no report, no validation, no colliders, no response, and frames alone"
       : with.source.empty() && !is_same ? "--with-source: name the mesh that " + with.asset + " was baked from"
       : with.at.empty() && is_same      ? "--at: say where the second stands: it would stand in the first"
       : static_cast<int>(!with.motion.clip.empty()) + static_cast<int>(!with.motion.poses.empty()) +
@@ -87,6 +90,8 @@ ExitCode run_view(const ViewOptions& options) {
     const std::string asset = read_file(options.asset);
     page.asset.assign(asset.begin(), asset.end());
   }
+  std::optional<Responder> responder;
+  if (options.respond) page.responder = &responder.emplace(animated, choose_target("auto"), options.ahead);
   {
     Progress progress("view " + options.asset + ":");
     const auto show = [&](int i) { progress.show(fmt::format("frame {} of {}", i + 1, animated.frame_count())); };
@@ -98,6 +103,7 @@ ExitCode run_view(const ViewOptions& options) {
     }
   }
   write_atomically(options.output, html);
+  if (responder) say("{}", response_text(responder->measures(), animated));
   if (html.size() > kLargePageBytes) {
     say(stderr,
         "spherechain: warning: {}: {:.0f} MB take browsers long to open (fewer frames: --frames, one clip: --clip)\n",

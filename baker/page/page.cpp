@@ -16,6 +16,7 @@
 #include "baker/page/page_rig.h"
 #include "baker/report/json_text.h"
 #include "baker/report/report.h"
+#include "baker/report/response_report.h"
 #include "baker/volumes/volume_json.h"
 
 namespace spherechain::baker {
@@ -83,9 +84,11 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
   FrameLists<std::array<std::uint16_t, 2>> fit_pairs, detect_pairs, collider_pairs;
   for (int i = 0; i < frames; ++i) {
     progress(i);
-    const Deformation deformation = animated.deformation(i);
+    const Deformation as_animated = animated.deformation(i),
+                      deformation = options.responder == nullptr ? as_animated : options.responder->respond(i);
     const std::vector<Vec3> positions = animated.positions(deformation);
     motion.add(deformation, positions);
+    if (options.responder != nullptr) motion.add_animated(as_animated);
     const bool is_next = i > 0 && animated.frame_at(i).clip == animated.frame_at(i - 1).clip;
     const PageFrame frame = runtime.run(pack(positions), SkinPose(animated, deformation).pose(), is_next);
     numbers.push_back(static_cast<float>(animated.number(i)));
@@ -141,6 +144,7 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
   const double still = static_cast<double>(page.size() + json_text(data, -1).size());
   PageMotion motion(animated.character(), axes);
   data["frames"] = frames_json(animated, options, still, motion, progress);
+  if (options.responder != nullptr) data["response"] = response_json(options.responder->measures());
   data["motion"] = motion.json();
   data["mesh"] = page_mesh(animated, motion.rest(), parts, spheres);
   std::string html = page.fill(data);

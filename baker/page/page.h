@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "baker/play/play.h"
+#include "baker/play/responder.h"
 #include "baker/volumes/colliders.h"
 #include "spherechain/types.h"
 
@@ -26,6 +27,7 @@ struct PageOptions {
   bool they_meet = true;
   Radius radius = SC_RADIUS_DETECT;
   const Colliders* colliders = nullptr;  // to show; null: none
+  Responder* responder = nullptr;        // corrects the poses; null: they stay as animated
   double fps = 30;
   std::size_t max_bytes = 512'000'000;  // Chromium reads no script of 2^29 letters or more
 };

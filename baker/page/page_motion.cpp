@@ -14,14 +14,18 @@ void add(std::vector<float>& out, const Vec3& v) {
   for (int k = 0; k < 3; ++k) out.push_back(static_cast<float>(v[k]));
 }
 
+void add(std::vector<float>& out, const std::vector<Affine>& bones) {
+  for (const Affine& bone : bones) {
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 4; ++column) out.push_back(static_cast<float>(bone.matrix()(row, column)));
+    }
+  }
+}
+
 }  // namespace
 
 void PageMotion::add(const Deformation& deformation, const std::vector<Vec3>& positions) {
-  for (const Affine& bone : deformation.bones) {
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 4; ++column) bones_.push_back(static_cast<float>(bone.matrix()(row, column)));
-    }
-  }
+  baker::add(bones_, deformation.bones);
   for (const double weight : deformation.morphs) morphs_.push_back(static_cast<float>(weight));
   morph_count_ = deformation.morphs.size();
   if (!deformation.positions.empty()) {
@@ -41,8 +45,10 @@ void PageMotion::add(const Deformation& deformation, const std::vector<Vec3>& po
   baker::add(centers_, sum / static_cast<double>(positions.size()));
 }
 
+void PageMotion::add_animated(const Deformation& deformation) { baker::add(animated_, deformation.bones); }
+
 std::size_t PageMotion::bytes() const {
-  return sizeof(float) * (bones_.size() + vertices_.size() + boxes_.size() + centers_.size());
+  return sizeof(float) * (bones_.size() + animated_.size() + vertices_.size() + boxes_.size() + centers_.size());
 }
 
 bool PageMotion::moves(std::size_t morph) const {
@@ -65,6 +71,7 @@ ordered_json PageMotion::json(Still still) const {
     return out;
   }
   out["bones"] = base64(bones_);
+  if (!animated_.empty()) out["animated"] = base64(animated_);
   out["morph_weights"] = base64(morphs_);
   ordered_json& targets = out["morphs"] = ordered_json::array();
   for (std::size_t m = 0; m < morph_count_; ++m) {

@@ -18,6 +18,9 @@ class PageMotion {
   // Frames in order. `positions` are those of the deformation.
   void add(const Deformation& deformation, const std::vector<Vec3>& positions);
 
+  // The bones of the frame added last before a response corrected them.
+  void add_animated(const Deformation& deformation);
+
   // So far.
   std::size_t bytes() const;
 
@@ -33,7 +36,7 @@ class PageMotion {
   const Character& character_;
   BodyFrame axes_;
   std::size_t morph_count_ = 0;
-  std::vector<float> bones_, vertices_, morphs_;
+  std::vector<float> bones_, animated_, vertices_, morphs_;
   std::vector<float> boxes_, centers_;  // of the character in the axes, their height as the unit
 };
 

@@ -101,6 +101,35 @@ test('a page of before and after opens at the deepest fault before, and lays one
   assert.equal(await arms.page.locator('[data-over]').count(), 0);
 });
 
+test('a page of --respond shows corrected poses and their contacts, with the pose as animated as a ghost', async () => {
+  const { page: file, frames, response } = pages.responded;
+  assert.ok(response.faulty_before > response.faulty_after, JSON.stringify(response));
+  const [bones, animated] = ['bones', 'animated'].map((key) => unpack(readData(file).motion[key], Float32Array));
+  const size = bones.length / frames.length;
+  const turned = frames.map((_, i) => Math.max(...bones.subarray(i * size, (i + 1) * size).map((x, k) => Math.abs(x - animated[i * size + k]))));
+  const most = turned.indexOf(Math.max(...turned));
+  const opened = await shown(file);
+  const { page } = opened;
+  const row = (name, depth) => `${inAnyOrder(name)}: ${depth.toFixed(1)}`;
+  for (const number of [0, 19, most]) {
+    await goTo(page, number);
+    const measured = frames[number].penetrations.map(({ parts: [a, b], depth_mm: depth }) => row(a === b ? `${a} with itself` : `${a}, ${b}`, depth));
+    assert.deepEqual((await contacts(page)).map(({ name, depth }) => row(name, depth)).sort(), measured.sort());
+  }
+  const { frames: all, faulty_before: before, faulty_after: after } = response;
+  assert.match(await page.locator('#response').innerText(), new RegExp(`${before} of ${all} frames had a fault of an arm, ${after} ha`));
+  const both = await picture(page);
+  await press(page, 'o');
+  const differing = compare(both, await picture(page));
+  assert.ok(differing > 0.0005 && differing < 0.1, `${differing}`);
+  assert.ok(!(await page.locator('#show-ghost').isChecked()));
+  await press(page, 'o');
+  const back = compare(both, await picture(page));
+  assert.ok(back < differing / 10, `${back}`);
+  silent(opened);
+  assert.equal(await arms.page.locator('#show-ghost').count(), 0);
+});
+
 test('the page is one file of less than 6 MB', () => {
   assert.ok(statSync(pages.arms).size < 6e6);
   assert.doesNotMatch(readFileSync(template, 'utf8'), /<(link|script|img)[^>]+(src|href)="(?!data:)/);

@@ -1,7 +1,7 @@
 // The pages under test: made by the real tool, and variants of their data.
 import { execFileSync, spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { dirname, join } from 'node:path';
 
 const DATA = /(<script id="spherechain-data" type="application\/json">)([^<]*)(<\/script>)/;
 
@@ -19,6 +19,9 @@ export function makePages({ tool, human, huesitos, poses, folder }) {
   run('view', asset, ...motion, '40', ...given, '-o', file('arms.html'));
   run('play', asset, ...motion, '40', '--contacts', '--json', file('arms.json'));
   run('view', asset, '--source', human, '-o', file('rest.html'));
+  const boxing = ['--source', human, '--motion', join(dirname(human), '../BVH/Boxing_Toes.bvh'), '--frames', '40'];
+  run('view', asset, ...boxing, '--respond', '-o', file('responded.html'));
+  run('play', asset, ...boxing, '--respond', '--json', file('responded.json'));
   const second = ['--with', asset, '--with-poses', join(poses, 'animation_arms.json'), '--at', '0,0.2,180'];
   run('view', asset, ...motion, '14', ...second, '-o', file('two.html'));
   run('fix', huesitos, '-o', file('fixed.glb'), '--report', file('fixed'), '--force');
@@ -28,6 +31,7 @@ export function makePages({ tool, human, huesitos, poses, folder }) {
     rest: file('rest.html'),
     two: file('two.html'),
     play: readJson('arms.json').frames,
+    responded: { page: file('responded.html'), ...readJson('responded.json') },
     clip: readJson('arms.json').clips[0],
     inspect: JSON.parse(run('inspect', asset, '--json')),
     report: readJson('report.json'),

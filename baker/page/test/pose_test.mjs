@@ -55,13 +55,14 @@ async function posing(page) {
   if (hasRuntime) await page.waitForFunction(() => spherechainViewer.posing.isLive());
   await drawn(page);
 }
-// Begins to pose a character that was posed before, as at the start.
-async function again(page) {
+// Begins to pose a character that was posed before, as at the start, but for the response.
+async function again(page, responds = false) {
   if (await page.locator('#handles').isVisible()) await page.locator('#pose').click();
   await page.keyboard.press('0');
   await page.evaluate(() => spherechainViewer.setFrame(0));
   await posing(page);
   await page.locator('#pose-reset').click();
+  if (!responds) await page.keyboard.press('k');
   await drawn(page);
 }
 
@@ -150,6 +151,35 @@ test('a hand goes where it is dragged, what touches then is what play finds in t
   await page.keyboard.press('Control+y');
   assert.deepEqual(await poseOf(page), saved.poses[0]);
   assert.ok(await page.locator('#pose-redo').isDisabled());
+  silent(session);
+});
+
+test('a hand that is dragged into the body is kept out of it, unless the response is off', withRuntime, async () => {
+  const { page } = session;
+  await again(page, true);
+  const hand = await middle(page, 'right hand'), [x, y] = await middle(page, 'left_hip');
+  const faultsOf = async () => (await shown(page)).filter(({ kind }) => kind >= 4).map(({ name }) => name);
+  const drags = async () => {
+    await drag(page, hand, [x - 30, y]);
+    return { pose: await poseOf(page), faults: await faultsOf() };
+  };
+  const kept = await drags();
+  assert.deepEqual(kept.faults, []);
+  const { saved } = await roundTrip(page, man);
+  assert.deepEqual(saved.poses[0], kept.pose, 'it is saved as it is seen');
+  await page.keyboard.press('Control+z');
+  assert.deepEqual(await poseOf(page), {});
+  const second = await drags();
+  for (const [joint, turn] of Object.entries(second.pose)) turn.forEach((x, i) => assert.ok(Math.abs(x - kept.pose[joint][i]) < 0.01, 'nothing is remembered'));
+  await page.keyboard.press('Control+z');
+  await page.keyboard.press('k');
+  assert.ok(!(await page.locator('#show-respond').isChecked()));
+  const inside = await drags();
+  assert.notDeepEqual(inside.faults, []);
+  await page.keyboard.press('k');
+  assert.deepEqual(await faultsOf(), [], 'switched on, it brings the hand out');
+  await page.keyboard.press('Control+z');
+  assert.deepEqual(await poseOf(page), inside.pose);
   silent(session);
 });
 

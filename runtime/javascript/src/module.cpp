@@ -22,7 +22,7 @@ static_assert(sizeof(void*) == 4 && sizeof(sc_status) == 2 * 4 && offsetof(sc_st
 static_assert(offsetof(sc_asset_info, vertex_count) == 6 * 4 && offsetof(sc_asset_info, writer) == 9 * 4);
 static_assert(offsetof(sc_asset_info, origin) == 16 * 4 && offsetof(sc_asset_info, metres_per_unit) == 29 * 4);
 static_assert(offsetof(sc_asset_info, ignored_pairs) == 30 * 4 && sizeof(sc_asset_info) == 32 * 4);
-static_assert(SC_ABI_VERSION == 16);
+static_assert(SC_ABI_VERSION == 17);
 static_assert(sizeof(sc_bone) == 2 * 4 && sizeof(sc_part) == 5 * 4 && sizeof(sc_rest_sphere) == 9 * 4);
 static_assert(sizeof(sc_model_def) == 6 * 4 && offsetof(sc_model_def, inverse_bind_layout) == 4 * 4);
 static_assert(sizeof(sc_body_def) == 5 * 4 && offsetof(sc_body_def, finds_steps) == 3 * 4);

@@ -100,9 +100,11 @@ const shown = {
   numbers: false,
   oneClip: false, // on the timeline
   over: false, // before and after a change: one over the other
+  ghost: true, // the pose as animated, over the corrected one
   hiddenParts: new Set(),
   sets: new Set(),
   posing: false, // by hand
+  respond: true, // arms of a pose by hand stay out of the body
   contact: null, // the key of the contact last gone to
   alarm: null, // "a-b": the pair of spheres last gone to
   pinned: null,
@@ -154,6 +156,7 @@ export function start(model, listed = []) {
   for (let frame = 0; frame < model.frameCount; ++frame) most = Math.max(most, model.contacts.count(frame));
   const layers = {
     skinLayer: new SkinLayer(skin, model.look),
+    ghostLayer: model.response ? new SkinLayer(new Skin(model.mesh, { ...model.motion, bones: model.motion.animated }), null, true) : null,
     sphereLayer: new SphereLayer(model.spheres.length),
     contactLayer: new ContactLayer(skin, most),
     colliderLayer: model.colliders ? new ColliderLayer(model.colliders, model.motion) : null,
@@ -200,7 +203,7 @@ export function start(model, listed = []) {
   $('help-button').addEventListener('click', () => $('help').showModal());
   $('licences').textContent = LICENCES;
   const chains = model.sets.filter((set) => set.kind === 'chain').map((set) => set.name);
-  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains, hasMethod: model.hasMethod, hasChange: model.change !== null, hasColliders: model.colliders !== null, hasMask: model.mask !== null, posing: layers.posing, editor: layers.editor, listed });
+  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains, hasMethod: model.hasMethod, hasChange: model.change !== null, hasResponse: model.response !== null, hasColliders: model.colliders !== null, hasMask: model.mask !== null, posing: layers.posing, editor: layers.editor, listed });
   runPlayback(store, model);
 
   window.spherechainViewer = Object.freeze({

@@ -7,6 +7,7 @@ export const SPHERE = '#8497ab';
 export const COLLIDER = '#2f7fd6';
 export const CLAY = '#c9c2b6';
 export const GHOST = '#6d7278';
+export const ANIMATED = '#2f6fd6'; // a ghost that lies in other skin
 export const POINTED = '#f0e442';
 export const LAYERS = ['#c9c2b6', '#e69f00', '#0072b2']; // of a mask: uncovered, covered, hidden
 export const EDITED = { changed: '#e69f00', added: '#009e73', deleted: '#d41f2c' };

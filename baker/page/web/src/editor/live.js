@@ -1,9 +1,12 @@
 // The runtime in the page: what touches in a pose that no frame has.
 import { load } from 'spherechain';
+import { ArmResponse } from './arm_response.js';
 import { isFault, keyOf } from '../model/contacts.js';
 import { decode } from '../model/frame_lists.js';
 
 const KINDS = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration', 'inside']; // the runtime's words for CLASSES of contacts.js
+
+const TURNING_MOST = 16; // joints of a response
 
 // Whether the page was built with it.
 export const hasRuntime = load !== null;
@@ -34,7 +37,10 @@ export async function openLive(base64, { unitsPerMm }) {
   };
 
   let previous = []; // of the last pose that was measured in full
+  const arms = model.parts.filter(({ name }) => / (upper arm|forearm|hand)$/.test(name));
   return {
+    // Null where it has no arms to turn, or too many.
+    responseOf: (poser) => (arms.length > 0 && arms.length <= TURNING_MOST ? new ArmResponse(runtime, body, poser) : null),
     // Directions out of the next pose are looked for as if it were the first.
     forget() {
       previous = [];

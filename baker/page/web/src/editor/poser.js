@@ -12,7 +12,7 @@ function put(m, to, at) {
   const e = m.elements;
   for (let row = 0; row < 3; ++row) for (let column = 0; column < 4; ++column) to[at + 4 * row + column] = e[4 * column + row];
 }
-const about = (turn, center) =>
+export const about = (turn, center) =>
   new Matrix4().makeTranslation(center).multiply(new Matrix4().makeRotationFromQuaternion(turn)).multiply(new Matrix4().makeTranslation(center.clone().negate()));
 const turnBetween = (from, to) => new Quaternion().setFromUnitVectors(from.clone().normalize(), to.clone().normalize());
 const across = (v, axis) => v.clone().addScaledVector(axis, -v.dot(axis));

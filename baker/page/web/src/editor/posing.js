@@ -1,5 +1,6 @@
 import './posing.css';
 import { commandBlock, h } from '../base/dom.js';
+import { check } from '../panels/controls.js';
 import { History, stepOf } from './history.js';
 import { hasRuntime, openLive } from './live.js';
 import { addHandles } from './pose_handles.js';
@@ -53,6 +54,7 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
   const history = new History({ frame: null, isChanged: false }); // {frame, own, isChanged}: whether it is other than its frame's
   let saved = null;
   let live = null;
+  let response = null;
   let fullMs = Infinity; // that the last full measure took
   let settle = 0;
   let isSettled = false;
@@ -77,8 +79,7 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
     };
     store.set({ pose: store.state.pose + 1 });
   };
-  const show = () => {
-    const start = performance.now();
+  const show = (start = performance.now()) => {
     posed.show();
     const isQuick = fullMs > FAST_MS;
     clearTimeout(settle);
@@ -87,10 +88,13 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
     times.all = performance.now() - start;
   };
   const stateNow = (isChanged) => ({ frame: posed.frame, own: poser.own.slice(), isChanged });
+  const correct = (drag) => store.state.respond && response?.correct(drag, model.rig.morphWeights(posed.frame));
   // `drag`: the movement that goes on; all of it is one step back.
   const changed = (drag) => {
+    const start = performance.now();
+    correct(drag);
     history.push(stateNow(true), drag);
-    show();
+    show(start);
   };
   const stop = () => {
     clearTimeout(settle);
@@ -108,6 +112,8 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
     openLive(model.rig.asset, model.mesh).then(
       (opened) => {
         live = opened;
+        response = live.responseOf(poser);
+        keepOut.hidden = response === null;
         if (posed.frame !== null) find(false, true);
       },
       (error) => say(`This browser cannot find contacts: ${error.message}`),
@@ -161,6 +167,8 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
   const redoButton = button('pose-redo', 'Redo', 'Redo what was undone (Ctrl Shift Z, Ctrl Y)', () => step(1));
   const resetButton = button('pose-reset', 'As in the frame', 'Back to the pose of the frame', reset);
   const saveButton = button('pose-save', 'Save pose', 'Download the pose as a pose file', save);
+  const keepOut = check(store, 'respond', 'Keep arms out of the body', 'K');
+  keepOut.hidden = true;
   const status = h('p', { role: 'status' });
   const turned = h('p', { id: 'pose-joint' });
   const command = commandBlock('spherechain', 'play', model.title, '--source', model.inspect.source.file, '--poses', fileName, '--frames', '1');
@@ -170,6 +178,7 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
     { id: 'posing', 'aria-label': 'Pose', role: 'group', hidden: true },
     h('p', {}, 'Drag a handle. Click a joint to turn it.'),
     turned,
+    keepOut,
     h('div', { class: 'pose-steps' }, undoButton, redoButton),
     resetButton,
     saveButton,
@@ -197,6 +206,11 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
     tell();
     handles.place();
   });
+  store.watch(['respond'], ({ posing }) => {
+    if (!posing || !history.now.isChanged || !correct({ from: poser.own.slice() })) return;
+    history.push(stateNow(true));
+    show();
+  });
   store.watch(['pose', 'posing', 'joint'], ({ posing, joint }) => {
     turned.hidden = !posing || joint === null;
     if (!turned.hidden) turned.replaceChildren(h('b', {}, model.rig.joints[joint].name), ` ${poser.angle(joint).toFixed(0)}° from rest`);
@@ -211,6 +225,7 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
 
   const keys = [
     ['J', 'j', 'Pose the character by hand', toggle],
+    ['K', 'k', 'Pose: keep arms out of the body', () => store.set({ respond: !store.state.respond })],
     ['Ctrl Z', null, 'Pose: undo; with Shift redo', () => {}],
   ];
   return { keys, toggle, place: handles.place, file, times, isLive: () => live !== null, isSettled: () => isSettled };

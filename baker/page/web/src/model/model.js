@@ -66,6 +66,7 @@ function readMotion({ motion, frames }) {
   const bones = decode(motion?.bones, Float32Array);
   return {
     bones,
+    animated: motion?.animated ? decode(motion.animated, Float32Array) : null, // the bones before a response corrected them
     boneCount: frames?.count > 0 ? bones.length / (12 * frames.count) : 0,
     vertices: motion?.vertices ? decode(motion.vertices, Float32Array) : null,
     morphs: (motion?.morphs ?? []).map(({ vertices, deltas, weights }) => ({
@@ -129,6 +130,7 @@ export function readModel(data) {
     inspect: data.inspect,
     report: data.report,
     validation: data.validation ?? null,
+    response: data.response ?? null, // how much it changed: the page shows corrected poses
     radius: data.radius,
     parts: [...new Set(partOf)].sort((a, b) => a - b).map((part) => ({ part, name: partName(part) })),
     regions: data.inspect.regions.map((region) => ({ ...region, label: words(region.name) })),

@@ -27,6 +27,13 @@ export function fillContactPanel(panel, store, model, flyTo) {
     h('summary', {}, 'What the classes mean'),
     h('dl', {}, ...CLASSES.map((name, kind) => [h('dt', {}, name), h('dd', {}, MEANINGS[kind])]).reverse().flat()),
   );
+  const { frames, faulty_before: before, faulty_after: after, new_faults: added } = model.response ?? {};
+  const response = h(
+    'p',
+    { class: 'note', id: 'response' },
+    `The response corrects this motion: ${before} of ${plural(frames ?? 0, 'frame')} had a fault of an arm, ${after} ${after === 1 ? 'has' : 'have'} one now (${added} with a new one).`,
+  );
+  if (model.response) panel.append(response);
   panel.append(summary, list, order, clipTitle, clipList, classes);
 
   const row = (properties, badge, name, note, onclick) =>

@@ -5,7 +5,7 @@ import { legend } from './sphere_panel.js';
 // Controls that choose what is shown. Sets (chains, levels, sides) mark spheres: if any is chosen, all other spheres fade.
 // Controls for the paper's method are behind a switch: class `method`.
 
-function check(store, key, label, shortcut, set = (value) => store.set({ [key]: value })) {
+export function check(store, key, label, shortcut, set = (value) => store.set({ [key]: value })) {
   const input = h('input', { type: 'checkbox', id: `show-${key}`, onchange: () => set(input.checked) });
   store.watch([key], (state) => (input.checked = state[key]));
   return h('label', { class: 'check', title: `Key ${shortcut}` }, input, label);
@@ -69,6 +69,7 @@ export function fillControls(panel, store, model) {
   const content = [
     h('h2', {}, 'Show'),
     h('div', { class: 'row' }, check(store, 'skin', 'Skin', 'S'), slider(store, 'skinOpacity', 'Opacity of the skin')),
+    model.response && check(store, 'ghost', 'As animated, as a ghost', 'O'),
     model.look && check(store, 'look', 'Textures', 'X'),
     model.mask && check(store, 'layers', 'Layers in colours', 'L'),
     model.mask && check(store, 'masked', "Hide the mask's triangles", 'K'),

@@ -2,7 +2,7 @@ import { h } from '../base/dom.js';
 
 // Keyboard shortcuts, and the page that lists them. `listed`: labels and texts of keys that another part of the page binds.
 
-export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, deepest, chains, hasMethod, hasChange, hasColliders, hasMask, posing, editor, listed }) {
+export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, deepest, chains, hasMethod, hasChange, hasResponse, hasColliders, hasMask, posing, editor, listed }) {
   const flip = (key) => () => store.set({ [key]: !store.state[key] });
   const method = (action) => () => store.state.method && action();
   const allChains = () => store.set({ sets: new Set(chains.every((name) => store.state.sets.has(name)) ? [] : chains) });
@@ -30,6 +30,7 @@ export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, dee
     ['End', 'End', 'Last frame', () => timeline.step(Infinity)],
     ...(hasMask ? [] : [['D', 'd', 'Deepest frame of the clip', deepest]]),
     ...(hasChange ? [['O', 'o', 'Before and after: beside each other, or the old pose as a ghost', flip('over')]] : []),
+    ...(hasResponse ? [['O', 'o', 'The pose as animated, as a ghost', flip('ghost')]] : []),
     ['1', '1', 'View from the front', () => stage?.view('front')],
     ['2', '2', 'View from the side', () => stage?.view('side')],
     ['3', '3', 'View from the back', () => stage?.view('back')],

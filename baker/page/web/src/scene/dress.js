@@ -1,7 +1,9 @@
 import { css } from '../base/dom.js';
-import { CLAY, CONTACT, FALSE_ALARM, GHOST, LAYERS, POINTED, regionColour, SPHERE, tone } from '../base/palette.js';
+import { ANIMATED, CLAY, CONTACT, FALSE_ALARM, GHOST, LAYERS, POINTED, regionColour, SPHERE, tone } from '../base/palette.js';
 import { HIDDEN_LAYER } from '../model/model.js';
 import { looks } from './skin_layer.js';
+
+const MOVED = 0.01; // so far, as a share of the height, and its ghost is seen in full
 
 function dressSkin(model, state, skinLayer) {
   skinLayer.group.visible = state.skin;
@@ -18,6 +20,16 @@ function dressSkin(model, state, skinLayer) {
     else if (state.method && sphere === state.pointed) skinLayer.setLook(zone, POINTED, looks.POINTED);
     else skinLayer.setLook(zone, state.patches ? tone(base, sphere) : base, looks.PLAIN);
   });
+}
+
+// The pose as animated, where the response has moved it.
+function dressGhost(model, state, { skin }, ghostLayer) {
+  ghostLayer.group.visible = state.skin && state.ghost && !state.posing && !state.editing;
+  if (!ghostLayer.group.visible) return;
+  ghostLayer.pose(state.frame);
+  ghostLayer.skin.zones.forEach(({ part }, zone) => ghostLayer.setLook(zone, ANIMATED, state.hiddenParts.has(part) ? looks.HIDDEN : looks.GHOST));
+  const p = skin.positions, q = ghostLayer.skin.positions;
+  ghostLayer.show((i) => Math.hypot(p[i] - q[i], p[i + 1] - q[i + 1], p[i + 2] - q[i + 2]) / (MOVED * model.height));
 }
 
 function dressSpheres(model, state, sphereLayer, visible) {
@@ -43,8 +55,9 @@ function dressSpheres(model, state, sphereLayer, visible) {
 }
 
 // Brings the layers to what the state says; `visible` becomes the spheres that are seen.
-export function dress(model, state, { skinLayer, sphereLayer, contactLayer, colliderLayer }, visible) {
+export function dress(model, state, { skinLayer, ghostLayer, sphereLayer, contactLayer, colliderLayer }, visible) {
   dressSkin(model, state, skinLayer);
+  if (ghostLayer) dressGhost(model, state, skinLayer, ghostLayer);
   dressSpheres(model, state, sphereLayer, visible);
   if (colliderLayer) {
     colliderLayer.group.visible = state.colliders && !state.editing;

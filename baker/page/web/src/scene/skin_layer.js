@@ -63,8 +63,9 @@ const fragmentShader = `
     float alpha = opacity + (1.0 - opacity) * 0.55 * edge * smoothstep(0.0, 0.15, opacity);
     if (look.a > 0.9) alpha = max(alpha, 0.62);
     if (ghosts > 0.5) alpha = opacity * (0.2 + 0.6 * pow(1.0 - dot(n, e), 2.0));
+    if (ghosts > 1.5) alpha *= painted.a;
     if (alpha < 0.004) discard;
-    gl_FragColor = vec4((colour * (1.0 - painted.a) + painted.rgb) * lightOn(n, e), alpha);
+    gl_FragColor = vec4((ghosts > 1.5 ? colour : colour * (1.0 - painted.a) + painted.rgb) * lightOn(n, e), alpha);
     #include <colorspace_fragment>
   }`;
 
@@ -95,7 +96,8 @@ function pictureTexture({ pixels, size, count }) {
 }
 
 export class SkinLayer {
-  constructor(skin, look = null) {
+  // `isGhost`: all of it is a ghost, which is seen through other skin.
+  constructor(skin, look = null, isGhost = false) {
     this.skin = skin;
     const geometry = new THREE.BufferGeometry();
     this.position = new THREE.BufferAttribute(skin.positions, 3).setUsage(THREE.DynamicDrawUsage);
@@ -125,9 +127,9 @@ export class SkinLayer {
     };
     this.depth = mesh(3, 0, { colorWrite: false });
     // Behind the skin where it is in the same place.
-    const ghost = () => mesh(8, 1, { depthWrite: false, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 40 });
+    const ghost = () => mesh(8, isGhost ? 2 : 1, { depthTest: !isGhost, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 40 });
     this.surface = mesh(4, 0, {});
-    this.group = new THREE.Group().add(this.depth, this.surface, ...(skin.mesh.changed ? [ghost()] : []));
+    this.group = new THREE.Group().add(this.depth, this.surface, ...(isGhost || skin.mesh.changed ? [ghost()] : []));
     for (const mesh of this.group.children) mesh.frustumCulled = false;
   }
 
@@ -153,6 +155,12 @@ export class SkinLayer {
       if (colour === null) continue;
       for (let k = 3 * t; k < 3 * t + 3; ++k) if (colour[3] >= paint[4 * index[k] + 3]) paint.set(colour, 4 * index[k]);
     }
+    this.heat.needsUpdate = true;
+  }
+
+  // How much of a ghost is seen: `shareOf(i)` of the vertex whose place begins at `i`.
+  show(shareOf) {
+    for (let i = 0; i < this.skin.positions.length; i += 3) this.heat.array[(4 * i) / 3 + 3] = 255 * Math.min(shareOf(i), 1);
     this.heat.needsUpdate = true;
   }
 

@@ -14,7 +14,7 @@ const FIELD_OF_VIEW = 26;
 const TAN = Math.tan(THREE.MathUtils.degToRad(FIELD_OF_VIEW / 2));
 
 // Null where the browser has no WebGL.
-export function createStage(canvas, model, store, { skinLayer, sphereLayer, contactLayer, colliderLayer }) {
+export function createStage(canvas, model, store, { skinLayer, ghostLayer, sphereLayer, contactLayer, colliderLayer }) {
   const context = canvas.getContext('webgl2', { antialias: true, alpha: true });
   if (context === null) return null;
   const renderer = new THREE.WebGLRenderer({ canvas, context, antialias: true, alpha: true });
@@ -43,6 +43,7 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
   character.matrixAutoUpdate = false;
   character.add(sphereLayer.group, skinLayer.group, contactLayer.group);
   if (colliderLayer) character.add(colliderLayer.group);
+  if (ghostLayer) character.add(ghostLayer.group);
   scene.add(floor.mesh, character);
   const findView = createViewFinder(renderer, skinLayer, contactLayer, FIELD_OF_VIEW);
 
