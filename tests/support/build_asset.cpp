@@ -158,11 +158,12 @@ class Builder {
     const auto core_triangles = stream(or_zeros(in.core_triangles, cores));
     const auto hulls = structs<schema::Hull>(fb_, in.hulls);
     const auto hull_bones = structs<schema::HullBone>(fb_, in.hull_bones);
-    return schema::CreateSkin(
-        fb_, in.vertex_count, triangles, corners, part_runs, part_run_ends, clusters, cluster_vertices, cluster_bones,
-        sources, welds, positions, influence_counts, influence_bones, weights, morph_counts, morphs, boxes, term_counts,
-        term_bones, terms, bounds_morph_counts, bounds_morph_targets, bounds_morphs, pieces, covers, cover_distances, rest_contacts, layer_pairs,
-        layer_runs, layer_run_ends, windings, core_triangles, core_windings, hulls, hull_bones, hull_points);
+    return schema::CreateSkin(fb_, in.vertex_count, triangles, corners, part_runs, part_run_ends, clusters,
+                              cluster_vertices, cluster_bones, sources, welds, positions, influence_counts,
+                              influence_bones, weights, morph_counts, morphs, boxes, term_counts, term_bones, terms,
+                              bounds_morph_counts, bounds_morph_targets, bounds_morphs, pieces, covers, cover_distances,
+                              rest_contacts, layer_pairs, layer_runs, layer_run_ends, windings, core_triangles,
+                              core_windings, hulls, hull_bones, hull_points);
   }
 
   const AssetParts& parts_;

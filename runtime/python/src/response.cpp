@@ -21,9 +21,8 @@ class LoadedResponse {
  public:
   LoadedResponse(const LoadedModel& model, const Array<std::uint32_t>& parents,
                  const std::optional<Array<float>>& mobility, const std::optional<Array<float>>& budget,
-                 const std::optional<Array<float>>& hinges,
-                 const std::optional<Array<std::uint64_t>>& part_pairs, const std::vector<float>& rule,
-                 const LoadedModel* largest_other)
+                 const std::optional<Array<float>>& hinges, const std::optional<Array<std::uint64_t>>& part_pairs,
+                 const std::vector<float>& rule, const LoadedModel* largest_other)
       : model_(&model), joint_count_(length(parents)) {
     BodyDef body_def;
     body_def.largest_other = largest_other == nullptr ? nullptr : largest_other->model().handle();

@@ -66,8 +66,8 @@ struct SkinSizes {
 
 struct SkinData {
   SkinSizes sizes;
-  Span<const std::uint8_t> triangles, cluster_vertices, cluster_bones, sources, welds;  // streams
-  Span<const std::uint8_t> influence_bones, rest_contacts, hull_points;                 // likewise
+  Span<const std::uint8_t> triangles, cluster_vertices, cluster_bones, sources, welds;          // streams
+  Span<const std::uint8_t> influence_bones, rest_contacts, hull_points;                         // likewise
   Span<const std::uint8_t> part_run_ends, layer_pairs, layer_run_ends, core_triangles, covers;  // likewise
   Span<const std::uint8_t> part_runs, layer_runs, corners, influence_counts;
   Span<const std::int8_t> windings, core_windings;

@@ -25,8 +25,8 @@ std::size_t scratch_words_of(const sc_model& model, const sc_model& other, std::
                              bool finds_steps) {
   const AssetView &a = view_of(model.asset), &b = view_of(other.asset);
   std::size_t words = std::max({inside_scratch_words(a, a), inside_scratch_words(a, b), inside_scratch_words(b, a),
-                                gap_scratch_words(a, b), gap_scratch_words(b, a),
-                                skin_scratch_words(a), body_scratch_words(a, b), body_scratch_words(b, a),
+                                gap_scratch_words(a, b), gap_scratch_words(b, a), skin_scratch_words(a),
+                                body_scratch_words(a, b), body_scratch_words(b, a),
                                 measure_words(a, a, true, max_triangles), measure_words(a, b, false, max_triangles),
                                 measure_words(b, a, false, max_triangles), floor_scratch_words(&model.asset)});
   if (finds_steps) {
