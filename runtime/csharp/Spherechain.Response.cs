@@ -34,7 +34,7 @@ namespace Spherechain
         /// <summary>Other characters and props to stay out of, in their poses; at most 8, always in this order.</summary>
         public Body[] Others;
         public Ground? Ground;
-        /// <summary>Joints that stay where they are animated, at most 4. Those that turn themselves keep their direction, too.</summary>
+        /// <summary>Joints that stay where they are animated, at most 4. Joints that turn themselves keep their direction, too.</summary>
         public uint[] Planted;
         public Target Target;
 

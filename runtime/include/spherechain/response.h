@@ -65,7 +65,7 @@ typedef struct sc_response_frame {
   size_t other_count SC_ZERO;
   const sc_ground* ground SC_ZERO; /* null: none */
   /* Joints that stay where they are animated, a hand on a table: at most 4, and only as well as the joints above them
-   * can hold them there. Those that turn themselves keep their direction, too. */
+   * can hold them there. Joints that turn themselves keep their direction, too. */
   const uint32_t* planted SC_ZERO;
   size_t planted_count SC_ZERO;
   sc_target target SC_ZERO; /* the same answers on every one */

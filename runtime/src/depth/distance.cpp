@@ -20,7 +20,7 @@ Nearest above(const Double3& p, const Corners& t) {
   return size > 0 ? Nearest{std::abs(along) / size, p, p - (along / (size * size)) * normal} : Nearest{HUGE_VAL, p, p};
 }
 
-// Of two segments: closest points by alternating projection from the lines' own (Ericson, Real-Time Collision
+// Takes the closest points of two segments by alternating projection from the lines' own (Ericson, Real-Time Collision
 // Detection, 5.1.9).
 Nearest between(const Double3& p, const Double3& p_end, const Double3& q, const Double3& q_end) {
   const Double3 d = p_end - p, e = q_end - q, r = p - q;

@@ -95,7 +95,7 @@ class Finder final : public NearClusters {
         fold_(kFold * double{view_of(*job.a.asset).info().height}),
         margin_(static_cast<float>(job.margin)) {}
 
-  // Of one body each pair is asked about once.
+  // Each pair of one body is asked about once.
   bool asks(std::size_t sphere_a, std::size_t sphere_b) const override {
     const PartBits &parts = memory_.parts_a[sphere_a],
                    &others = (job_.are_one ? memory_.parts_a : memory_.parts_b)[sphere_b];
@@ -187,7 +187,7 @@ class Finder final : public NearClusters {
   }
 
   void look(const NearTriangle& a, const NearTriangle& b, double& least) {
-    // What `least` loses when it is rounded is more than a rounding of the boxes' sums.
+    // Rounded, `least` may lose a gap that is as wide as the narrowest so far.
     if (!are_within(a.low, a.high, b.low, b.high, static_cast<float>(least)) ||
         !memory_.asked[a_.surface->parts[a.triangle]].has(b_.surface->parts[b.triangle]) ||
         dot(a.outward, b.outward) > kTurnsAway || !may_face(a, b, least) || !may_face(b, a, least) || is_fold(a, b)) {
@@ -204,7 +204,7 @@ class Finder final : public NearClusters {
     }
   }
 
-  // Of gaps that lie near each other the narrowest stays; where there is no room, the widest goes.
+  // The narrowest of gaps that lie near each other stays; where there is no room, the widest goes.
   void keep(const Gap& gap) {
     Gap* const end = job_.gaps.data + job_.count;
     Gap* const near = std::find_if(job_.gaps.data, end, [&](const Gap& known) {

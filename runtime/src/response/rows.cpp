@@ -224,7 +224,7 @@ std::size_t list_previous(sc_response& response, std::size_t body) {
 bool is_pair_found(const sc_response& response, const Row& of) {
   return std::any_of(response.rows, response.rows + response.row_count, [&](const Row& row) {
     return row.kept.part == of.kept.part && row.kept.other == of.kept.other && row.kept.body == of.kept.body &&
-           row.kept.is_clear == 0 && !(row.kept.unseen > 0);
+           row.kept.is_clear == 0 && !(row.kept.unseen > 0) && dot(row.normal, of.normal) > 0;
   });
 }
 

@@ -187,7 +187,7 @@ void find_pairs(sc_response& response, const sc_response_def& def) {
       const auto is_asked_as = [&](std::size_t bit) { return (def.part_pairs[bit / 64] >> bit % 64 & 1) != 0; };
       const bool are_joined = sc_asset_part(&asset, a).parent == static_cast<std::int32_t>(b) ||
                               sc_asset_part(&asset, b).parent == static_cast<std::int32_t>(a);
-      // What one hand holds does not make way for what the other holds.
+      // A thing in one hand does not make way for a thing in the other.
       const bool are_held = !turns(response, a) && !turns(response, b) && response.turning_of_part[a] != 0 &&
                             response.turning_of_part[b] != 0;
       const bool is_asked = response.turning_of_part[a] != response.turning_of_part[b] &&
