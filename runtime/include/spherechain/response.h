@@ -38,7 +38,7 @@ typedef struct sc_response_def {
  * vector w (the world's axes, radians), the gap grows by w . ((at - o) x normal) if the joint moves `part`, and shrinks
  * by w . ((at_other - o) x normal) if it moves `other`. */
 typedef struct sc_contact_row {
-  uint32_t part, other;
+  uint32_t part, other; /* the more mobile one first, as in sc_penetration */
   uint32_t body;        /* 0: the character's own; k: other is a part of others[k - 1], or SC_FLOOR */
   sc_vec3 at, at_other; /* on the skin of each, in the world */
   sc_vec3 normal;       /* from `other` to `part`, of unit length */
@@ -53,7 +53,7 @@ typedef struct sc_response_frame {
   const sc_transform* place SC_ZERO;  /* of the roots in the world; null: the identity */
   const float* morph_weights SC_ZERO; /* as of sc_pose */
   size_t morph_weight_count SC_ZERO;
-  float seconds SC_ZERO;  /* since the last frame, up to 1 */
+  float seconds SC_ZERO;  /* since the last frame; 0 is a pause, in which turns do not change; more than 1 is 1 */
   float weakness SC_ZERO; /* from 0, the full response, to 1, none: to fade it, or for the rows alone */
   /* The most times that contacts are looked for; 0: 3; 16 at most. The first frame of a state takes twice as many. */
   uint32_t rounds SC_ZERO;

@@ -118,7 +118,7 @@ class Response:
 
         joints: where each joint is in its parent's space, as animated: dtype TRANSFORM (joints,), or float32 (joints, 10):
         translation, rotation x, y, z, w, scale. The result has the same form.
-        seconds: since the last frame, up to 1.
+        seconds: since the last frame; 0 is a pause, in which turns do not change.
         place: of the roots in the world, a single TRANSFORM or ten float32; None: the identity.
         weakness: from 0, the full response, to 1, none: to fade it.
         rounds: the most times that contacts are looked for, up to 16; 0: 3.
@@ -141,7 +141,7 @@ class Response:
             raise ValueError(f"others has {len(others)} bodies: pass at most {_OTHERS_MAX}")
         morphs = self.model._morphs(morph_weights, ())
         frame = {
-            "seconds": _number("seconds", seconds, 1), "weakness": _number("weakness", weakness, 1),
+            "seconds": _number("seconds", seconds, float("inf")), "weakness": _number("weakness", weakness, 1),
             "rounds": _whole("rounds", rounds, _ROUNDS_MAX), "ahead_frames": _whole("ahead_frames", ahead_frames, _AHEAD_MAX),
             "place": None if place is None else self._transforms("place", place, ())[0].reshape(1, _FLOATS),
             "ahead": None if ahead is None else self._transforms("ahead", ahead, (self.joint_count,))[0],

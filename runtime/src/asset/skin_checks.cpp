@@ -343,7 +343,7 @@ class SkinChecker {
     return check_pairs(skin_.rest_contacts, asset_.info().triangle_count, "skin.rest_contacts", fault,
                        sizes_.rest_contacts, is_sorted) &&
            check_pairs(skin_.layer_pairs, sizes_.clusters, "skin.layer_pairs", fault, sizes_.layer_pairs, is_sorted) &&
-           check_runs(skin_.layer_runs, skin_.layer_run_ends, 2 * kIsDouble, "skin.layer_runs");
+           check_runs(skin_.layer_runs, skin_.layer_run_ends, std::size_t{2} * kIsDouble, "skin.layer_runs");
   }
 
   bool check_windings() {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kFaces = -0.1;     // the cosine of a triangle's normal and the way to the other one, at least
 constexpr double kTurnsAway = 0.5;  // the cosine of two triangles' normals, at most
-constexpr double kFold = 0.02;      // of the height: skins that are so near at rest have no gap
+constexpr double kFold = 0.008;     // of the height: skins that are so near at rest have no gap
 
 // A bit for each body part.
 struct PartBits {
@@ -168,7 +168,8 @@ class Finder final : public NearClusters {
   // Are they near each other at rest, too?
   bool is_fold(const NearTriangle& a, const NearTriangle& b) const {
     const auto corner = [](const Surface& surface, std::uint32_t triangle) {
-      const float* const p = surface.rest_positions.data + 3 * std::size_t{surface.triangle_vertices[3 * triangle]};
+      const float* const p =
+          surface.rest_positions.data + 3 * std::size_t{surface.triangle_vertices[3 * std::size_t{triangle}]};
       return Double3{double{p[0]}, double{p[1]}, double{p[2]}};
     };
     const Double3 apart = corner(*a_.surface, a.triangle) - corner(*b_.surface, b.triangle);

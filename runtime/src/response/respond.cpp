@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kRelease = 0.03;       // seconds, in which a turn that nothing asks for shrinks to 1 / e
 constexpr double kFastest = 8;          // radians a second
+constexpr double kLongest = 1;          // seconds: a longer frame counts as that
 constexpr double kNothing = 1e-4;       // a smaller turn ends
 constexpr double kLacks = 0.0006;       // a share of the height: what rows may lack without another round
 constexpr double kPlantedOff = 0.0012;  // a share of the height: what planted joints may be off
@@ -125,7 +126,7 @@ Status find_turns(sc_response& response, const sc_response_frame& frame, const s
                   Turns& turns, std::uint32_t& at_budget) {
   const std::size_t count = response.turning_count;
   place_joints(skeleton_of(response), joints, response.place, response.animated);
-  const double seconds = double{frame.seconds}, passed = seconds / kRelease,
+  const double seconds = std::min(double{frame.seconds}, kLongest), passed = seconds / kRelease,
                kept = 1 / (1 + passed + passed * passed / 2);
   Turns rest, last;
   for (std::size_t t = 0; t < count; ++t) {
@@ -258,8 +259,8 @@ Status check(const sc_response& response, const sc_response_frame& frame) {
     return refuse(SC_BAD_VALUE, SC_FIELD_JOINTS);
   }
   const auto is_share = [](float value) { return value >= 0 && value <= 1; };
-  if (!is_share(frame.seconds) || !is_share(frame.weakness) || frame.rounds > 16 || frame.other_count > kOthersMost ||
-      frame.ahead_frames > kAheadMost) {
+  if (!(frame.seconds >= 0) || !std::isfinite(frame.seconds) || !is_share(frame.weakness) || frame.rounds > 16 ||
+      frame.other_count > kOthersMost || frame.ahead_frames > kAheadMost) {
     return refuse(SC_BAD_VALUE, SC_FIELD_QUERY);
   }
   if (std::any_of(frame.others, frame.others + frame.other_count,

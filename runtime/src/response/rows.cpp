@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <utility>
 
 #include "runtime/src/base/pair_bits.h"
 #include "runtime/src/base/status.h"
@@ -188,6 +189,12 @@ Status take_gaps(sc_response& response, const sc_response_frame& frame, std::siz
   job.run();
   for (std::size_t i = 0; i < job.count && response.row_count < kRowsMost; ++i) {
     Row row{};
+    // As in a penetration, the more mobile part comes first.
+    const auto mobility = [&](std::uint32_t part) { return asset_of(own).part(part).mobility; };
+    if (body == 0 && mobility(gaps[i].other) > mobility(gaps[i].part)) {
+      std::swap(gaps[i].part, gaps[i].other);
+      std::swap(gaps[i].at, gaps[i].at_other);
+    }
     row.kept.part = static_cast<std::uint16_t>(gaps[i].part);
     row.kept.other = static_cast<std::uint16_t>(gaps[i].other);
     row.kept.body = static_cast<std::uint16_t>(body);

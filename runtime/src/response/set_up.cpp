@@ -47,10 +47,11 @@ double mobility_of(const char* name) {
   return ends_with(name, " upper arm") || ends_with(name, " forearm") ? 1 : ends_with(name, " hand") ? kOfHand : 0;
 }
 
-// The tangent of an angle up to a half, with the same bits everywhere.
-double tangent(double angle) {
-  const double s = angle * angle;
-  return angle * (1 + s / 3 + 2 * s * s / 15 + 17 * s * s * s / 315);
+// A turn by an angle up to 2 has this length (see turn_of), with the same bits everywhere.
+double length_of_turn(double angle) {
+  const double quarter = angle / 4, s = quarter * quarter,
+               tangent = quarter * (1 + s / 3 + 2 * s * s / 15 + 17 * s * s * s / 315);
+  return 4 * tangent / (1 - tangent * tangent);
 }
 
 // Adds a joint that turns. False where a figure is out of range, or they are too many.
@@ -67,7 +68,7 @@ bool add_turning(sc_response& response, std::uint32_t joint, double mobility, do
   added = TurningJoint{};
   added.joint = joint;
   added.mobility = mobility;
-  added.budget = 2 * tangent(budget / 4);
+  added.budget = length_of_turn(budget);
   return true;
 }
 
