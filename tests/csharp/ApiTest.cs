@@ -613,7 +613,7 @@ public static class ApiTest
         Refused("no joints", Code.Null, "joints", "null", () => respond(new ResponseFrame(), null));
         Refused("few joints", Code.TooSmall, "joints", "fewer", () => respond(new ResponseFrame(), new JointTransform[1]));
         Refused("a NaN", Code.BadValue, "transform", "", () => respond(new ResponseFrame(), broken));
-        Refused("two seconds", Code.BadValue, "query", "", () => respond(new ResponseFrame { Seconds = 2 }, given));
+        Refused("endless seconds", Code.BadValue, "query", "", () => respond(new ResponseFrame { Seconds = float.PositiveInfinity }, given));
         Refused("rounds below 0", Code.BadValue, "query", "below 0", () => respond(new ResponseFrame { Rounds = -1 }, given));
         Refused("17 rounds", Code.BadValue, "query", "", () => respond(new ResponseFrame { Rounds = 17 }, given));
         Refused("few joints ahead", Code.TooSmall, "joints", "ahead", () => respond(new ResponseFrame { Ahead = new JointTransform[1], AheadFrames = 1 }, given));
