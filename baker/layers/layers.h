@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "baker/import/import.h"
-
 namespace spherechain::baker {
+
+struct Character;
 
 // Skin that hangs together. Pieces are numbered by their lowest vertices.
 struct SkinPiece {
@@ -16,8 +16,8 @@ struct SkinPiece {
   double border = 0;  // length of its edges at rest that one triangle has: hems, hair cards; 0 where it is closed
 };
 
-// How a skin lies over itself at rest. Triangles and clusters are in the asset's
-// order; empty lists say that nothing is known yet.
+// How a skin lies over itself at rest. Triangles and clusters are in the asset's order; empty lists say that nothing is
+// known yet.
 struct Layers {
   using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
   // The piece over a cluster that most looks from there meet. The distance is their median.

@@ -2,7 +2,6 @@
 #include "baker/layers/pieces.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <sstream>
 #include <string>

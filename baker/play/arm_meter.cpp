@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFaultDepth = 0.003 / 1.75, kMoved = 0.003;  // shares of the height
 
-// The root mean square of second differences, of all places together.
+// The sum of the squares of second differences, of all places together.
 double acceleration(const std::vector<std::vector<Vec3>>& track) {
   double sum = 0;
   for (std::size_t f = 2; f < track.size(); ++f) {

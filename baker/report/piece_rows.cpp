@@ -48,8 +48,11 @@ class Rows {
     if (!rows_.empty()) sum_up(asset->skin());
   }
 
+  // Files come from strangers: they may have no pieces, contacts of triangles that are in none, or empty ones.
   std::vector<PieceRow> finish() {
+    if (rows_.empty()) return {};
     for (const Pair& pair : surface_.rest_contacts) {
+      if (surface_.place_of_source[pair.a] == kNoPlace || surface_.place_of_source[pair.b] == kNoPlace) continue;
       const std::size_t a = row_of_triangle(surface_.place_of_source[pair.a]);
       const std::size_t b = row_of_triangle(surface_.place_of_source[pair.b]);
       crossing_.insert(std::minmax(a, b));
@@ -62,6 +65,7 @@ class Rows {
       }
       std::ranges::stable_sort(row.covers, [](const auto& a, const auto& b) { return a.area > b.area; });
     }
+    std::erase_if(rows_, [](const PieceRow& row) { return !(row.area > 0); });
     double whole = 0;
     for (const PieceRow& row : rows_) whole += row.area;
     for (PieceRow& row : rows_) {
@@ -74,7 +78,7 @@ class Rows {
   }
 
  private:
-  // Files come from strangers: pieces without a name count as the last.
+  // Pieces without a name count as the last.
   std::size_t row_of_triangle(std::uint32_t triangle) const {
     const std::uint32_t piece = number_[surface_.triangle_vertices[3 * std::size_t{triangle}]];
     return row_of_[std::min<std::size_t>(piece, row_of_.size() - 1)];

@@ -384,7 +384,7 @@ namespace Spherechain
 
     public struct ContactRow  // sc_contact_row
     {
-        /// <summary>the more mobile one first, as in sc_penetration</summary>
+        /// <summary>the more mobile one first, where one is</summary>
         public uint Part, Other;
         /// <summary>0: the character's own; k: other is a part of others[k - 1], or SC_FLOOR</summary>
         public uint Body;
@@ -672,7 +672,7 @@ namespace Spherechain
             /// <summary>as of sc_pose</summary>
             public float* MorphWeights;
             public UIntPtr MorphWeightCount;
-            /// <summary>since the last frame; 0 is a pause, in which turns do not change; more than 1 is 1</summary>
+            /// <summary>since the last frame; 0 is a pause, in which nothing turns on; more than 1 is 1</summary>
             public float Seconds;
             /// <summary>from 0, the full response, to 1, none: to fade it, or for the rows alone</summary>
             public float Weakness;

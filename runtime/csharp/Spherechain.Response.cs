@@ -22,7 +22,7 @@ namespace Spherechain
         /// <summary>The place of the roots in the world; null: the identity.</summary>
         public JointTransform? Place;
         public float[] MorphWeights;
-        /// <summary>Since the last frame; 0 is a pause, in which turns do not change.</summary>
+        /// <summary>Since the last frame; 0 is a pause, in which nothing turns on.</summary>
         public float Seconds;
         /// <summary>From 0, the full response, to 1, none: to fade it.</summary>
         public float Weakness;

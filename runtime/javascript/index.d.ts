@@ -178,7 +178,7 @@ export interface Response {
 }
 
 export interface ResponseOptions {
-  /** Since the last frame; 0 is a pause, in which turns do not change. */
+  /** Since the last frame; 0 is a pause, in which nothing turns on. */
   seconds: number;
   /** The place of the roots in the world. */
   place?: { translation?: ArrayLike<number>; rotation?: ArrayLike<number>; scale?: ArrayLike<number> };

@@ -29,7 +29,7 @@ void print(const std::string& name, const baker::ResponseMeasures& of) {
              100 * of.moved_without_fault, kHuman * of.residual_p95, of.us_mean, of.us_p99);
 }
 
-// A row of the table in docs/response.md: the response before the slash, capsules after it.
+// A row of the tables in docs/response-figures.md: the response before the slash, capsules after it.
 struct Row {
   std::string name;
   baker::ResponseMeasures response, capsules;

@@ -86,7 +86,8 @@ void spoil_frame(Case& c, const Body& own, DrawnFrame& out) {
   const float none[] = {NAN, -1e-38F, -1, 1.5F, INFINITY};
   switch (c.random.below(7)) {
     case 0:
-      frame.seconds = c.random.one_in(2) ? NAN : -1e-38F;
+      do frame.seconds = c.random.pick(none);
+      while (frame.seconds == 1.5F);  // counts as 1
       out.wanted = {SC_BAD_VALUE, SC_FIELD_QUERY};
       return;
     case 1:

@@ -33,12 +33,12 @@ typedef struct sc_response_def {
 #define SC_RESPONSE_WORDS 480
 
 /* Two spots that are to stay apart: of parts that meet, or met within half a second, and of parts that come within 8 mm
- * of each other on a human, unless they are as near at rest. The latter are listed where a joint is turned or parts
- * meet, and where `weakness` is 1; never of the ground. Any solver can use it: if a joint at o turns by the small
- * vector w (the world's axes, radians), the gap grows by w . ((at - o) x normal) if the joint moves `part`, and shrinks
- * by w . ((at_other - o) x normal) if it moves `other`. */
+ * of each other on a human, unless these spots are within 14 mm at rest. The latter are listed where a joint is turned
+ * or has to be, and where `weakness` is 1; never of the ground. Any solver can use it: if a joint at o turns by the
+ * small vector w (the world's axes, radians), the gap grows by w . ((at - o) x normal) if the joint moves `part`, and
+ * shrinks by w . ((at_other - o) x normal) if it moves `other`. */
 typedef struct sc_contact_row {
-  uint32_t part, other; /* the more mobile one first, as in sc_penetration */
+  uint32_t part, other; /* the more mobile one first, where one is */
   uint32_t body;        /* 0: the character's own; k: other is a part of others[k - 1], or SC_FLOOR */
   sc_vec3 at, at_other; /* on the skin of each, in the world */
   sc_vec3 normal;       /* from `other` to `part`, of unit length */
@@ -53,7 +53,7 @@ typedef struct sc_response_frame {
   const sc_transform* place SC_ZERO;  /* of the roots in the world; null: the identity */
   const float* morph_weights SC_ZERO; /* as of sc_pose */
   size_t morph_weight_count SC_ZERO;
-  float seconds SC_ZERO;  /* since the last frame; 0 is a pause, in which turns do not change; more than 1 is 1 */
+  float seconds SC_ZERO;  /* since the last frame; 0 is a pause, in which nothing turns on; more than 1 is 1 */
   float weakness SC_ZERO; /* from 0, the full response, to 1, none: to fade it, or for the rows alone */
   /* The most times that contacts are looked for; 0: 3; 16 at most. The first frame of a state takes twice as many. */
   uint32_t rounds SC_ZERO;
@@ -83,8 +83,8 @@ extern "C" {
 
 /* The body must outlive the response. On failure *response is null: SC_NULL, SC_NO_MEMORY; SC_BAD_VALUE with
  * SC_FIELD_PARENTS: a parent does not exist, or is below its child; SC_BAD_VALUE with SC_FIELD_JOINTS: a mobility or
- * budget is out of range, or more than 16 joints turn; SC_TOO_SMALL with SC_FIELD_JOINTS: fewer joints than the model
- * has. A hinge that is not finite is SC_BAD_VALUE with SC_FIELD_JOINTS. */
+ * budget is out of range, a hinge is not finite, or more than 16 joints turn; SC_TOO_SMALL with SC_FIELD_JOINTS: fewer
+ * joints than the model has. */
 SPHERECHAIN_API sc_status sc_create_response(sc_body* body, const sc_response_def* def,
                                              sc_response** response) SC_NOEXCEPT;
 SPHERECHAIN_API void sc_destroy_response(sc_response* response) SC_NOEXCEPT; /* null is fine */
@@ -95,7 +95,8 @@ SPHERECHAIN_API void sc_destroy_response(sc_response* response) SC_NOEXCEPT; /* 
  * with `ahead` this is not checked. Faults can be left: the response does not turn trunk and legs, and tight places
  * have no way out.
  *
- * SC_OK; SC_NULL, SC_BAD_VALUE (with SC_FIELD_TRANSFORM: a transform is not finite), or a status of the questions: then
+ * SC_OK; SC_NULL, SC_BAD_VALUE (with SC_FIELD_TRANSFORM: a transform is not finite; with SC_FIELD_JOINTS: a planted
+ * joint does not exist, or they are too many), or a status of the questions: then
  * joints and state are as they were. */
 SPHERECHAIN_API sc_status sc_respond(sc_response* response, uint64_t* state, sc_response_frame* frame) SC_NOEXCEPT;
 

@@ -118,7 +118,7 @@ class Response:
 
         joints: where each joint is in its parent's space, as animated: dtype TRANSFORM (joints,), or float32 (joints, 10):
         translation, rotation x, y, z, w, scale. The result has the same form.
-        seconds: since the last frame; 0 is a pause, in which turns do not change.
+        seconds: since the last frame; 0 is a pause, in which nothing turns on.
         place: of the roots in the world, a single TRANSFORM or ten float32; None: the identity.
         weakness: from 0, the full response, to 1, none: to fade it.
         rounds: the most times that contacts are looked for, up to 16; 0: 3.

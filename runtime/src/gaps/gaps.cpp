@@ -21,6 +21,11 @@ struct PartBits {
   std::uint64_t words[4];
 
   void add(std::size_t part) { words[part / 64] |= std::uint64_t{1} << part % 64; }
+  void add(const PartBits& all) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      words[i] |= all.words[i];
+    }
+  }
   bool has(std::size_t part) const { return (words[part / 64] >> part % 64 & 1) != 0; }
   bool meets(const PartBits& other) const {
     return ((words[0] & other.words[0]) | (words[1] & other.words[1]) | (words[2] & other.words[2]) |
@@ -29,30 +34,32 @@ struct PartBits {
 };
 static_assert(8 * sizeof(PartBits) > kMaxPartCount);
 
-// A sphere has triangles of several parts.
-void find_parts(const Surface& surface, Span<PartBits> of_spheres) {
-  std::fill(of_spheres.begin(), of_spheres.end(), PartBits{});
+// Gives each sphere of `surface` what `of_part` says of its parts: it has triangles of several.
+template <typename OfPart>
+void join_parts(const Surface& surface, Span<PartBits> spheres, const OfPart& of_part) {
+  std::fill(spheres.begin(), spheres.end(), PartBits{});
   for (std::size_t part = 0; part + 1 < surface.first_of_part.size; ++part) {
     for (const TriangleRun& run : runs_of(surface, part)) {
-      of_spheres[surface.triangle_spheres[run.first]].add(part);
+      spheres[surface.triangle_spheres[run.first]].add(of_part(part));
     }
   }
 }
 
 struct Memory {
   PosedClusters a, b;
-  Span<PartBits> parts_a, parts_b;  // of each sphere
-  Span<PartBits> asked;             // of each part of a: those of b that it is asked about with
+  Span<PartBits> asked;  // of each part of a: those of b that it is asked about with
+  Span<PartBits> asks;   // of each sphere of a: the same, of all its parts
+  Span<PartBits> parts;  // of each sphere of b
 
   std::size_t lay_out(const AssetView& asset_a, const AssetView& asset_b, bool are_one, std::uint64_t* words) {
     WordMemory memory(words);
     spherechain::lay_out(asset_a, memory, a);
     if (!are_one) {
       spherechain::lay_out(asset_b, memory, b);
-      memory.take(parts_b, asset_b.spheres().size);
     }
-    memory.take(parts_a, asset_a.spheres().size);
     memory.take(asked, asset_a.part_count());
+    memory.take(asks, asset_a.spheres().size);
+    memory.take(parts, asset_b.spheres().size);
     return memory.used();
   }
 };
@@ -97,12 +104,7 @@ class Finder final : public NearClusters {
 
   // Each pair of one body is asked about once.
   bool asks(std::size_t sphere_a, std::size_t sphere_b) const override {
-    const PartBits &parts = memory_.parts_a[sphere_a],
-                   &others = (job_.are_one ? memory_.parts_a : memory_.parts_b)[sphere_b];
-    bool is_asked = false;
-    for (std::size_t part = 0; part < memory_.asked.size && !is_asked; ++part) {
-      is_asked = parts.has(part) && memory_.asked[part].meets(others);
-    }
+    const bool is_asked = memory_.asks[sphere_a].meets(memory_.parts[sphere_b]);
     if (!is_asked || !job_.are_one) {
       return is_asked;
     }
@@ -110,11 +112,12 @@ class Finder final : public NearClusters {
     return sphere_a != sphere_b && (a_.ignored[ignored / 64] >> ignored % 64 & 1) == 0;
   }
 
+  bool leaves_out(std::size_t cluster_a, std::size_t cluster_b) const override {
+    return is_buried(*a_.surface, cluster_a) || is_buried(*b_.surface, cluster_b) ||
+           (job_.are_one && are_layers(*a_.surface, cluster_a, cluster_b));
+  }
+
   void add(const NearCluster& a, const NearCluster& b) override {
-    if (is_buried(*a_.surface, a.cluster) || is_buried(*b_.surface, b.cluster) ||
-        (job_.are_one && are_layers(*a_.surface, a.cluster, b.cluster))) {
-      return;
-    }
     if (!are_within(a.low, a.high, b.low, b.high, margin_)) {
       return;
     }
@@ -243,12 +246,10 @@ void GapJob::run() {
   read_skin_table(asset_b, b.skin_table, surface_b);
   Memory memory;
   memory.lay_out(asset_a, asset_b, are_one, scratch);
-  set_pose(asset_a, surface_a, a.pose, filter, memory.a);
+  set_pose(asset_a, surface_a, a.pose, nullptr, memory.a);
   if (!are_one) {
     set_pose(asset_b, surface_b, b.pose, nullptr, memory.b);
-    find_parts(surface_b, memory.parts_b);
   }
-  find_parts(surface_a, memory.parts_a);
   const std::size_t parts_of_b = asset_b.part_count();
   for (std::size_t p = 0; p < memory.asked.size; ++p) {
     memory.asked[p] = PartBits{};
@@ -259,6 +260,12 @@ void GapJob::run() {
       }
     }
   }
+  join_parts(surface_a, memory.asks, [&](std::size_t part) { return memory.asked[part]; });
+  join_parts(surface_b, memory.parts, [](std::size_t part) {
+    PartBits own{};
+    own.add(part);
+    return own;
+  });
   count = 0;
   Finder finder(*this, memory);
   find_near(target, memory.a, are_one ? memory.a : memory.b, static_cast<float>(margin), finder);

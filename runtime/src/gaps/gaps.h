@@ -3,7 +3,6 @@
 #pragma once
 
 #include "runtime/src/base/double3.h"
-#include "runtime/src/base/filter.h"
 #include "runtime/src/clusters/posed_clusters.h"
 #include "runtime/src/skin/job_body.h"
 
@@ -16,12 +15,11 @@ struct Gap {
   double distance;
 };
 
-// All is checked before. Layers of one place, ignored pairs of spheres, skin that is near at rest
-// and skin that touches have no gap.
+// All is checked before. Layers of one place, ignored pairs of spheres, skin that is near at rest and skin that touches
+// have no gap.
 struct GapJob {
   JobBody a, b;  // of one body: the same
   bool are_one = true;
-  const Filter* filter = nullptr;             // of one body
   const std::uint64_t* part_pairs = nullptr;  // bit p n + q: part p of a and q of b, which has n parts, are asked about
   double margin = 0;                          // in the pose's units: what is farther apart has no gap
   double patch = 0;                           // of two parts, spots within this distance of each other are one gap
@@ -46,6 +44,7 @@ struct NearCluster {
 class NearClusters {
  public:
   virtual bool asks(std::size_t sphere_a, std::size_t sphere_b) const = 0;
+  virtual bool leaves_out(std::size_t cluster_a, std::size_t cluster_b) const = 0;
   virtual void add(const NearCluster& a, const NearCluster& b) = 0;
 
  protected:

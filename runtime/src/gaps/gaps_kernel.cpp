@@ -16,11 +16,14 @@ HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
+// By more than the margin: what is added is more than the roundings.
 HWY_INLINE Box widened(const Box& box, float margin) {
+  constexpr float kShare = 0x1p-20F;
   Box out = box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    out.low[axis] -= margin;
-    out.high[axis] += margin;
+    const float low = out.low[axis], high = out.high[axis];
+    out.low[axis] = low - margin - kShare * (margin + (low < 0 ? -low : low));
+    out.high[axis] = high + margin + kShare * (margin + (high < 0 ? -high : high));
   }
   return out;
 }
@@ -62,7 +65,10 @@ void find_near_clusters(const PosedClusters& a, const PosedClusters& b, float ma
           const BoxProbe box(widened(box_at(a.clusters, c), margin));
           for (std::size_t d = b.first_cluster[other]; d < end; d += kLanes) {
             for (std::uint64_t met = box.touching(b.clusters, d, end - d); met != 0; met &= met - 1) {
-              found.add(near_cluster(a, c), near_cluster(b, d + lowest_bit(met)));
+              const std::size_t near = d + lowest_bit(met);
+              if (!found.leaves_out(c, near)) {
+                found.add(near_cluster(a, c), near_cluster(b, near));
+              }
             }
           }
         }

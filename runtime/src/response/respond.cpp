@@ -20,8 +20,9 @@ constexpr double kFastest = 8;          // radians a second
 constexpr double kLongest = 1;          // seconds: a longer frame counts as that
 constexpr double kNothing = 1e-4;       // a smaller turn ends
 constexpr double kLacks = 0.0006;       // a share of the height: what rows may lack without another round
-constexpr double kPlantedOff = 0.0012;  // a share of the height: what planted joints may be off
-constexpr int kPlantSteps = 4, kHalvings = 6;
+constexpr double kPlantedOff = 0.0011;  // a share of the height: what planted joints may be off
+constexpr int kPlantSteps = 4;          // towards where they are animated
+constexpr int kHalvings = 6;            // of the turns where the steps do not lead there; the last makes them zero
 constexpr std::uint32_t kRounds = 3, kFirstRounds = 2;
 
 using Turns = Double3[kTurningMost];
@@ -162,10 +163,10 @@ Status find_turns(sc_response& response, const sc_response_frame& frame, const s
     // Gaps matter where a correction could close them, or where rows are all that is asked for.
     if (round == 0 && (are_turned(response, turns) || most_lacking(response) > 0 || frame.weakness == 1)) {
       status = find_gaps(response, frame);
+      if (status != SC_OK) {
+        return status;
+      }
       set_wanted(response, frame);
-    }
-    if (status != SC_OK) {
-      return status;
     }
     if (round + 1 == rounds || !(most_lacking(response) > kLacks * response.height)) {
       break;
@@ -250,8 +251,11 @@ void list_rows(sc_response& response, sc_response_frame& frame) {
 
 Status check(const sc_response& response, const sc_response_frame& frame) {
   if (frame.joints == nullptr || (frame.ahead_frames > 0 && frame.ahead == nullptr) ||
-      (frame.other_count > 0 && frame.others == nullptr) || (frame.planted_count > 0 && frame.planted == nullptr)) {
+      (frame.other_count > 0 && frame.others == nullptr)) {
     return refuse(SC_NULL, frame.joints == nullptr ? SC_FIELD_JOINTS : SC_FIELD_BODIES);
+  }
+  if (frame.planted_count > 0 && frame.planted == nullptr) {
+    return refuse(SC_NULL, SC_FIELD_JOINTS);
   }
   if (frame.planted_count > kPlantedMost ||
       std::any_of(frame.planted, frame.planted + frame.planted_count,

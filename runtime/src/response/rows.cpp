@@ -95,7 +95,7 @@ Row* find_patch(sc_response& response, const Row& like) {
   return nullptr;
 }
 
-// A new row, or one of parts that do not meet.
+// A new row, or one of parts that do not meet. Null: all rows are of contacts.
 Row* free_row(sc_response& response) {
   if (response.row_count < kRowsMost) {
     return &response.rows[response.row_count++];
@@ -165,9 +165,10 @@ Status take_gaps(sc_response& response, const sc_response_frame& frame, std::siz
   for (std::size_t i = 0; i < response.row_count; ++i) {
     const KeptRow& row = response.rows[i].kept;
     if (row.body == body) {
-      const std::size_t bit = row.part * count + row.other, back = row.other * count + row.part;
+      // A pair of one body has its bit where the lesser part comes first.
+      const std::size_t part = body == 0 ? std::min(row.part, row.other) : row.part,
+                        met = body == 0 ? std::max(row.part, row.other) : row.other, bit = part * count + met;
       pairs[bit / 64] &= ~(std::uint64_t{1} << bit % 64);
-      pairs[back / 64] &= ~(std::uint64_t{body == 0} << back % 64);
     }
   }
   Gap gaps[kGapsMost];

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <string_view>
@@ -127,6 +128,24 @@ struct Played {
   }
 };
 
+// The doll at rest, arms out to the sides.
+struct Resting {
+  Joints joints;
+  std::vector<float> bones;
+  Pose pose;
+
+  explicit Resting(const Played& played) : joints(played.at(0)) {
+    for (Transform& joint : joints) {
+      std::copy_n(std::vector<float>{0, 0, 0, 1}.data(), 4, joint.rotation);
+      bones.insert(bones.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
+    }
+    pose.bones = bones.data();
+    pose.bone_count = joints.size();
+    pose.bone_layout = SC_ROWS_3X4;
+  }
+  Resting(const Resting&) = delete;
+};
+
 // The angle between two rotations.
 double between(const Transform& l, const Transform& r) {
   double dot = 0, ll = 0, rr = 0;
@@ -159,12 +178,11 @@ TEST_CASE("arms leave the body, and never go deeper than they are animated") {
 
 TEST_CASE("where nothing is near, all stays as it is, bit for bit") {
   Played played;
-  Joints rest = played.at(0);
-  for (Transform& joint : rest) std::copy_n(std::vector<float>{0, 0, 0, 1}.data(), 4, joint.rotation);
-  Joints joints = rest;
+  const Resting rest(played);
+  Joints joints = rest.joints;
   REQUIRE(played.respond(joints) == SC_OK);
   CHECK(played.frame.turned == 0);
-  CHECK(same(rest, joints));
+  CHECK(same(rest.joints, joints));
 }
 
 TEST_CASE("joints keep to their budgets and to the pace of the response") {
@@ -232,32 +250,74 @@ TEST_CASE("a bent elbow does not bend backward") {
   CHECK(least > -0.01);
 }
 
-TEST_CASE("planted hands stay where they are animated, and the arms still leave the body") {
+TEST_CASE("planted joints stay where they are animated, and the arms still leave the body") {
   Played played;
-  const std::uint32_t wrists[] = {static_cast<std::uint32_t>(played.joint("left_wrist")),
-                                  static_cast<std::uint32_t>(played.joint("right_wrist"))};
   const double height = double{played.model.info().height};
-  double moved[2] = {};  // without and with: the largest
-  int cleared = 0;
-  for (const bool are_planted : {false, true}) {
-    played.state = {};
-    played.frame.planted = wrists;
-    played.frame.planted_count = are_planted ? 2 : 0;
-    for (std::size_t f = 0; f < kFrames; ++f) {
-      const Joints animated = played.at(f);
-      Joints joints = animated;
-      REQUIRE(played.respond(joints) == SC_OK);
-      const std::vector<Transform> was = played.world_of(animated), is = played.world_of(joints);
-      for (const std::uint32_t wrist : wrists) {
-        double& most = moved[are_planted ? 1 : 0];
-        most = std::max(most, distance(was[wrist].translation, is[wrist].translation) / height);
-      }
-      cleared += are_planted && played.fault_depth(animated) > 0 && !(played.fault_depth(joints) > 0) ? 1 : 0;
-    }
+  const std::uint32_t planted[] = {static_cast<std::uint32_t>(played.joint("left_wrist")),
+                                   static_cast<std::uint32_t>(played.joint("right_wrist"))};
+  std::vector<float> mobility(played.parents.size());
+  for (const char* const name : {"left_shoulder", "right_shoulder", "left_elbow", "right_elbow"}) {
+    mobility[played.joint(name)] = 1;
   }
-  CHECK(moved[0] > 0.05);
-  CHECK(moved[1] < 0.0013);
-  CHECK(cleared > 5);
+  // A hand that turns itself keeps its direction, too.
+  for (const float of_hands : {0.0F, 1.0F}) {
+    mobility[planted[0]] = mobility[planted[1]] = of_hands;
+    ResponseDef def = played.def();
+    def.mobility = mobility.data();
+    played.response = Response(played.body, def);
+    REQUIRE(played.response);
+    double moved[2] = {}, turned[2] = {};  // without and with: the largest
+    int cleared = 0;
+    for (const bool are_planted : {false, true}) {
+      played.state = {};
+      played.frame.planted = planted;
+      played.frame.planted_count = are_planted ? 2 : 0;
+      for (std::size_t f = 0; f < kFrames; ++f) {
+        const Joints animated = played.at(f);
+        Joints joints = animated;
+        REQUIRE(played.respond(joints) == SC_OK);
+        const std::vector<Transform> was = played.world_of(animated), is = played.world_of(joints);
+        for (const std::uint32_t joint : planted) {
+          double &far = moved[are_planted ? 1 : 0], &most = turned[are_planted ? 1 : 0];
+          far = std::max(far, distance(was[joint].translation, is[joint].translation) / height);
+          most = std::max(most, between(was[joint], is[joint]));
+        }
+        cleared += are_planted && played.fault_depth(animated) > 0 && !(played.fault_depth(joints) > 0) ? 1 : 0;
+      }
+    }
+    CHECK(moved[0] > 0.05);
+    CHECK(moved[1] < 0.00115);  // 2 mm on a human
+    CHECK(turned[0] > 0.3);
+    CHECK((of_hands == 0 || turned[1] < 0.0087));  // half a degree
+    CHECK(cleared > 5);
+  }
+}
+
+TEST_CASE("in a pause nothing turns on, and a long frame counts as a second") {
+  Played played;
+  int compared = 0;
+  for (std::size_t f = 0; f < kFrames; ++f) {
+    Joints joints = played.at(f), again = joints, slow = joints, slower = joints;
+    const ResponseState before = played.state;
+    REQUIRE(played.respond(joints) == SC_OK);
+    const ResponseState after = played.state;
+    const float left = played.frame.remaining;
+    played.frame.seconds = 0;
+    REQUIRE(played.respond(again) == SC_OK);
+    if (!(left > 0)) {  // else something may be taken back
+      ++compared;
+      for (std::size_t j = 0; j < joints.size(); ++j) CHECK(between(joints[j], again[j]) < 0.005);
+    }
+    for (Joints* const late : {&slow, &slower}) {
+      played.state = before;
+      played.frame.seconds = late == &slow ? 1.0F : 1000.0F;
+      REQUIRE(played.respond(*late) == SC_OK);
+    }
+    CHECK(same(slow, slower));
+    played.state = after;
+    played.frame.seconds = kStep;
+  }
+  CHECK(compared > 100);
 }
 
 TEST_CASE("a joint that has a hinge turns about it") {
@@ -357,6 +417,7 @@ TEST_CASE("a row's gap follows its joints as its normal says") {
     REQUIRE(played.respond(joints) == SC_OK);
     for (std::size_t i = 0; i < played.frame.row_count; ++i) {
       const ContactRow& row = played.frame.rows[i];
+      CHECK(distance(row.normal, {}) == doctest::Approx(1));
       const double gap = double{row.at.x - row.at_other.x} * row.normal.x +
                          double{row.at.y - row.at_other.y} * row.normal.y +
                          double{row.at.z - row.at_other.z} * row.normal.z;
@@ -371,16 +432,7 @@ TEST_CASE("a row's gap follows its joints as its normal says") {
 TEST_CASE("a gap is a row: closed by so much, the two touch, and by less they do not") {
   Played played, other;
   const float height = played.model.info().height;
-  Joints rest = played.at(0);
-  std::vector<float> bones;
-  for (Transform& joint : rest) {
-    std::copy_n(std::vector<float>{0, 0, 0, 1}.data(), 4, joint.rotation);
-    bones.insert(bones.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
-  }
-  Pose pose;
-  pose.bones = bones.data();
-  pose.bone_count = rest.size();
-  pose.bone_layout = SC_ROWS_3X4;
+  const Resting rest(played);
   const sc_body* const others[] = {other.body.handle()};
   played.frame.others = others;
   played.frame.other_count = 1;
@@ -388,23 +440,24 @@ TEST_CASE("a gap is a row: closed by so much, the two touch, and by less they do
   std::size_t looked_at = 0;
   for (int step = 0; step < 60; ++step) {  // the other comes from behind
     Transform place{{0.45F * height, 0, (0.3F - 0.005F * static_cast<float>(step)) * height}, {0, 0, 0, 1}, {1, 1, 1}};
-    REQUIRE(other.body.set_pose(pose, place) == SC_OK);
-    Joints joints = rest;
+    REQUIRE(other.body.set_pose(rest.pose, place) == SC_OK);
+    Joints joints = rest.joints;
     REQUIRE(played.respond(joints) == SC_OK);
     const std::vector<ContactRow> rows(played.frame.rows, played.frame.rows + played.frame.row_count);
     for (const ContactRow& row : rows) {
       const bool is_narrowest = std::none_of(rows.begin(), rows.end(), [&](const ContactRow& l) {
         return l.part == row.part && l.other == row.other && l.gap < row.gap;
       });
+      CHECK(distance(row.normal, {}) == doctest::Approx(1));
       if (row.body != 1 || row.gap <= 0 || row.allowed > 0 || !is_narrowest) continue;
-      for (const float share : {0.98F, 1.02F}) {
+      for (const float share : {0.99F, 1.01F}) {
         const Transform closer{
             {place.translation.x + share * row.gap * row.normal.x, place.translation.y + share * row.gap * row.normal.y,
              place.translation.z + share * row.gap * row.normal.z},
             {0, 0, 0, 1},
             {1, 1, 1}};
-        REQUIRE(played.looker.set_pose(pose) == SC_OK);
-        REQUIRE(other.looker.set_pose(pose, closer) == SC_OK);
+        REQUIRE(played.looker.set_pose(rest.pose) == SC_OK);
+        REQUIRE(other.looker.set_pose(rest.pose, closer) == SC_OK);
         const Contacts found = played.looker.contacts(other.looker);
         const bool meet = std::any_of(found.parts, found.parts + found.part_count, [&](const PartContact& parts) {
           return parts.part_a == row.part && parts.part_b == row.other;
@@ -419,31 +472,23 @@ TEST_CASE("a gap is a row: closed by so much, the two touch, and by less they do
 
 TEST_CASE("a hand stays out of another character and of the ground") {
   Played played, other;
-  Joints rest = played.at(0);  // arms out to the sides
-  std::vector<float> bones;
-  for (Transform& joint : rest) {
-    std::copy_n(std::vector<float>{0, 0, 0, 1}.data(), 4, joint.rotation);
-    bones.insert(bones.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
-  }
-  Pose pose;
-  pose.bones = bones.data();
-  pose.bone_count = rest.size();
-  pose.bone_layout = SC_ROWS_3X4;
+  const Resting rest(played);
   const float height = played.model.info().height;
-  const Transform place{{0.45F * height, 0, 0.085F * height}, {0, 0, 0, 1}, {1, 1, 1}};  // behind the left forearm
-  REQUIRE(other.body.set_pose(pose, place) == SC_OK);
   const sc_body* const others[] = {other.body.handle()};
   Ground ground;
   ground.up = {0, 1, 0};
-  ground.height = 0.7F * height;  // below the shoulders
-  for (const bool is_ground : {false, true}) {
+  ground.height = 0.7F * height;                                     // below the shoulders
+  for (const float behind : {0.0F, 0.05F, 0.06F, 0.075F, 0.085F}) {  // the other is behind the left forearm
+    const bool is_ground = behind <= 0;
+    const Transform place{{0.45F * height, 0, behind * height}, {0, 0, 0, 1}, {1, 1, 1}};
+    REQUIRE(other.body.set_pose(rest.pose, place) == SC_OK);
     played.state = {};
     played.frame.others = others;
     played.frame.other_count = is_ground ? 0 : 1;
     played.frame.ground = is_ground ? &ground : nullptr;
     float last = 0;
     for (int i = 0; i < 30; ++i) {
-      Joints joints = rest;
+      Joints joints = rest.joints;
       if (is_ground)
         std::copy_n(std::vector<float>{0, 0, -0.2F, 1}.data(), 4, joints[played.joint("left_shoulder")].rotation);
       REQUIRE(played.respond(joints) == SC_OK);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "baker/report/piece_rows.h"
+#include "tiny_skin.h"
 #include "two_shapes.h"
 
 using namespace spherechain::baker;
@@ -53,6 +54,29 @@ TEST_CASE("an asset knows the pieces of its skin: their hems, and how far the on
   CHECK(!cover.crosses);
   const double coat = 24 * kCoat, trunk = 40 * kTrunk;  // areas of the two, without the trunk's ends
   CHECK(cover.area == doctest::Approx(24 * kTrunk / (coat + trunk)).epsilon(0.2));
+}
+
+TEST_CASE("an asset whose pieces do not fit its skin is listed all the same") {
+  namespace test = spherechain::test;
+  for (const bool has_pieces : {false, true}) {
+    test::TinyAsset tiny = test::random_band(12, 3);
+    for (std::size_t i = 0; i < 12; ++i) test::give_pivots(tiny, i, 2, static_cast<unsigned>(i));
+    const test::TinySkin skin = test::add_bones(tiny, 5, 2);
+    test::add_skin(tiny, &skin, 4);
+    test::SkinParts& parts = tiny.parts.skin;
+    const std::uint32_t in_no_sphere = tiny.parts.triangle_count;
+    tiny.parts.triangle_count += 2;
+    parts.rest_contacts = {in_no_sphere, in_no_sphere + 1};
+    if (!has_pieces) {
+      parts.pieces.clear();
+      std::fill(parts.covers.begin(), parts.covers.end(), 0);
+    }
+    const std::vector<std::uint8_t> bytes = test::build(tiny.parts);
+    const OpenAsset asset({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "tiny");
+    const std::vector<PieceRow> rows = piece_rows(asset);
+    CHECK(rows.empty() == !has_pieces);
+    CHECK(std::all_of(rows.begin(), rows.end(), [](const PieceRow& row) { return row.area > 0; }));
+  }
 }
 
 TEST_CASE("a coat that slides on a trunk meets it only where layers are asked for") {
