@@ -190,10 +190,16 @@ Status take_back(sc_response& response, const sc_response_frame& frame, Turns& t
     return status == SC_OK ? find_rows(response, frame, 0) : status;
   };
   Turns tried{};
+  bool is_better = true;
   response.row_count = 0;  // faults are then measured along their shortest ways
   Status status = look_at(tried);
   const double before = response.fault_depth;
-  if (status != SC_OK || before >= after) {
+  if (status == SC_OK && before < after) {  // along the ways that rows keep, faults are deeper than by the shortest
+    response.row_count = 0;
+    status = look_at(turns);
+    is_better = response.fault_depth <= before;
+  }
+  if (status != SC_OK || is_better) {
     status = status == SC_OK ? pose(response, frame, frame.joints, turns) : status;
     carry_rows(response, rows, frame, 0);
     response.fault_depth = after;

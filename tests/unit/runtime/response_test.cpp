@@ -227,6 +227,25 @@ TEST_CASE("small steps of the animation make small steps of the response") {
   CHECK(largest < 0.02);
 }
 
+TEST_CASE("an arm that starts inside the body comes out") {
+  Played played;
+  int inside = 0, out = 0;
+  for (std::size_t f = 0; f < kFrames; f += 2) {
+    const Joints held = played.at(f);
+    if (!(played.fault_depth(held) > 0)) continue;
+    played.state = {};
+    Joints joints;
+    for (int i = 0; i < 12; ++i) {
+      joints = held;
+      REQUIRE(played.respond(joints) == SC_OK);
+    }
+    ++inside;
+    out += played.fault_depth(joints) > 0 ? 0 : 1;
+  }
+  CHECK(inside > 60);
+  CHECK(inside - out <= 4);  // four are deeper than a budget reaches
+}
+
 TEST_CASE("a bent elbow does not bend backward") {
   Played played;
   const std::size_t elbow = played.joint("left_elbow"), wrist = played.joint("left_wrist");
