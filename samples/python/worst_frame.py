@@ -58,8 +58,8 @@ def push_out(model, character, local, nodes, inverse_binds, most_steps=60):
         if energy == 0:
             break
         slopes = turns(character, world, nodes, inverse_binds, gradient)
-        # The energy is squared depth: twice this step would bring a single contact to zero.
-        step = energy / np.square(slopes).sum()
+        # The energy is squared depth: this step brings a single contact a little further than to zero.
+        step = 2.2 * energy / np.square(slopes).sum()
         step = min(step, MOST_TURN / np.linalg.norm(slopes, axis=1).max())
         for node, slope in enumerate(slopes):
             above = world[character.parents[node], :3, :3] if character.parents[node] >= 0 else np.eye(3)

@@ -107,12 +107,14 @@ class Gradients(unittest.TestCase):
             # Where nothing else gets in the way, a tenth less.
             self.assertLess(abs(np.median(after[used] / energy[used]) - 0.9), 0.02)
 
-    def test_the_skins_energy_is_the_sum_of_squared_depths_of_its_kinds(self):
+    def test_the_skins_energy_is_the_sum_of_squared_depths_beyond_the_rule_or_of_its_kinds(self):
         contacts = self.model.penetrations(self.single, full=True, classes=spherechain.CLASSES)
-        for kinds in (("penetration", "deep_fold"), ("touch", "fold")):
-            energy, gradient = self.model.skin_energy(self.single, full=True, classes=kinds, threads=2)
+        for kinds in (None, ("penetration", "deep_fold"), ("touch", "fold")):
+            classes = {} if kinds is None else {"classes": kinds}
+            energy, gradient = self.model.skin_energy(self.single, full=True, threads=2, **classes)
             for i, found in enumerate(contacts):
-                depths = np.array([c.depth if c.kind in kinds else 0 for c in found], np.float32)
+                depths = np.array([c.fault_depth if kinds is None else c.depth if c.kind in kinds else 0 for c in found],
+                                  np.float32)
                 self.assertAlmostEqual(energy[i], np.square(depths).sum(), delta=1e-5 * energy.max())
                 expected = np.tensordot(2 * depths, self.model.depth_gradients(found), 1)
                 np.testing.assert_allclose(gradient[i], expected, rtol=1e-5, atol=1e-6 * np.abs(gradient).max())

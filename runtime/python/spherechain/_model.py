@@ -266,17 +266,20 @@ class Model:
 
     def skin_energy(self, bones: NDArray[np.float32], *, morph_weights: Optional[NDArray[np.float32]] = None,
                     threads: int = 1, **query: Any) -> Tuple[Any, NDArray[np.float32]]:
-        """The sum of squared depths of penetrations, by default of faults, and its gradient by the bones' matrices.
+        """The sum of the squared depths of penetrations beyond what the rule allows, and its gradient by the bones' matrices.
 
-        Returns float32 (...), in squared units of the pose, and float32 (..., joints, 3, 4). The gradient is that of the
-        distance of the two deepest points, fixed on the skin. When other points become the deepest, it jumps: use
-        sphere_energy() first where parts are far inside each other.
+        That is Penetration.fault_depth, which grows from zero: what the response keeps apart. With `classes` it is the sum
+        of the squared depths of these classes. Returns float32 (...), in squared units of the pose, and float32 (...,
+        joints, 3, 4). The gradient is that of the distance of the two deepest points, fixed on the skin; what the rule allows
+        counts as constant. When other points become the deepest, it jumps: use sphere_energy() first where parts are far
+        inside each other.
         """
+        depth = "depth" if "classes" in query else "fault_depth"
         found, batch = self._penetrations(_PENETRATIONS, (bones, None, morph_weights), None, threads, query)
-        energy = np.array([np.square(of.array["depth"], dtype=np.float64).sum() for of in found], np.float32)
+        energy = np.array([np.square(of.array[depth], dtype=np.float64).sum() for of in found], np.float32)
         entries = np.concatenate([np.zeros(0, PENETRATION), *(of.array for of in found)])
         rows = np.repeat(np.arange(len(found)), [len(of) for of in found])
-        gradient = self._depth_gradients(entries, 2 * entries["depth"], rows, len(found), self._morphs(morph_weights, batch))
+        gradient = self._depth_gradients(entries, 2 * entries[depth], rows, len(found), self._morphs(morph_weights, batch))
         return energy.reshape(batch)[()], self._by_joint(gradient, batch)
 
     def depth_gradients(self, found: Penetrations,
