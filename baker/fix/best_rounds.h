@@ -5,8 +5,8 @@
 
 namespace spherechain::baker {
 
-// Takes the turns of the round with the least penetration, for each run of frames; among equal rounds the last one.
-// Events that were given up are opened again, so that their penetration counts.
+// Composes the turns of a clip: each frame takes those of one round, or none, so that little of its faults is left and
+// the joints turn little and smoothly.
 void take_best_rounds(MendState& state);
 
 }  // namespace spherechain::baker

@@ -25,7 +25,19 @@ std::vector<PosePenetration> FaultFinder::look(SkinPlayer& player, double frame,
   const BonePose bones(animated_.asset(), clip_.pose(frame, turns).deformation);
   player.set_pose(bones.pose());
   std::vector<PosePenetration> out;
-  for (const Penetration& found : player.measure_quickly(&asked_)) out.push_back({frame, found});
+  for (const Penetration& found : player.measure_strictly(asked_)) out.push_back({frame, found});
+  return out;
+}
+
+std::vector<PosePenetration> FaultFinder::in_sequence(const Turns& turns) {
+  std::vector<PosePenetration> out;
+  for (int f = 0; f < clip_.frames(); ++f) {
+    const BonePose bones(animated_.asset(), clip_.pose(f, turns).deformation);
+    players_[0].set_pose(bones.pose());
+    for (const Penetration& found : players_[0].measure_quickly(nullptr, f > 0)) {
+      out.push_back({static_cast<double>(f), found});
+    }
+  }
   return out;
 }
 
@@ -89,7 +101,7 @@ std::vector<std::vector<PosePenetration>> FaultFinder::in_poses(const std::vecto
   run_parallel(players_.size(), poses.size(), [&](std::size_t t, std::size_t i) {
     const BonePose bones(animated_.asset(), clip_.pose_of(poses[i].frame, poses[i].turns).deformation);
     players_[t].set_pose(bones.pose());
-    for (const Penetration& one : players_[t].measure_quickly(&asked)) {
+    for (const Penetration& one : players_[t].measure_strictly(asked)) {
       found[i].push_back({static_cast<double>(poses[i].frame), one});
     }
   });

@@ -22,8 +22,8 @@ struct PosePenetration {
   Penetration found;  // measured by the fast form: without its volume
 };
 
-// Measures the penetrations of a turned clip, many frames at a time. Results of a frame are kept until its joints turn
-// visibly.
+// Measures the penetrations of a turned clip, many frames at a time, strictly: what is no fault here is none in a clip,
+// whatever comes before it. Results of a frame are kept until its joints turn visibly.
 class FaultFinder {
  public:
   FaultFinder(const AnimatedAsset& animated, const TurnedClip& clip);
@@ -31,6 +31,8 @@ class FaultFinder {
   // Excludes pairs of parts (the lesser number first).
   void leave_out(std::set<std::pair<std::uint32_t, std::uint32_t>> pairs);
 
+  // As `check` finds them, frame by frame: a fault goes on until it is clearly none.
+  std::vector<PosePenetration> in_sequence(const Turns& turns);
   // Sorted by frame, in the order given, then by parts.
   std::vector<PosePenetration> in_frames(const std::vector<double>& frames, const Turns& turns);
   // Measures candidate poses quickly. Only pairs of parts of which one `moves` are measured.

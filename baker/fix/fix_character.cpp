@@ -166,7 +166,9 @@ class Fixer {
                return is_same(*known, event, clip.fps) && !is_worse(*known, event);
              });
     };
-    MendedClip mended{clip.name, mend_clip(*animated_, roles, clip, job_.mend, leave,
+    MendOptions options = job_.mend;
+    options.is_soft_parted = !job_.parts.empty();  // who names a part means it
+    MendedClip mended{clip.name, mend_clip(*animated_, roles, clip, options, leave,
                                            [&](const std::string& doing) { report_(clip.name + ": " + doing); })};
     mended.others = static_cast<int>(
         std::erase_if(mended.mend.events, [&](const MendedEvent& event) { return !is_asked_for(event.before); }));

@@ -57,7 +57,6 @@ std::vector<Constraint> constraints_of(const MendState& state, double weight) {
 // Moves the turns towards `target`. The step limit does not apply in frames with new target turns.
 double limited_step(const Turns& target, MendState& state) {
   const TurnedClip& clip = state.facts.clip;
-  const double budget = to_radians(state.facts.options.budget_degrees);
   double farthest = 0;
   for (std::size_t i = 0; i < state.turns.size(); ++i) {
     const std::size_t frame = i / clip.count();
@@ -65,7 +64,7 @@ double limited_step(const Turns& target, MendState& state) {
     Vec3 step = target[i] - turn;
     if (step.norm() > kStepLimit && state.jumps[frame] == 0) step *= kStepLimit / step.norm();
     const Vec3 to =
-        clip.within_limits(static_cast<int>(frame), static_cast<Index>(i % clip.count()), turn + step, budget);
+        clip.within_limits(static_cast<int>(frame), static_cast<Index>(i % clip.count()), turn + step, state.budget);
     farthest = std::max(farthest, (to - turn).norm());
     turn = to;
   }

@@ -12,15 +12,39 @@ namespace {
 constexpr double kDeeper = 0.5;       // mm: extra depth that is not yet a fault
 constexpr double kFoldDeeper = 2;     // the same for folds, which move with the joint
 constexpr double kDeeperShare = 0.1;  // plus this share of the depth before
+constexpr double kFoldShare = 0.65;   // of what the rule allows a fold: so much stays
+
+// Neighbours on one skin always meet near their joint, and need not be apart.
+bool may_fold(const Penetration& found) {
+  const Relation relation = found.measures.relation;
+  const bool are_neighbours = relation == SC_RELATION_NEAR || relation == SC_RELATION_SIBLINGS ||
+                              relation == SC_RELATION_JOINED ||
+                              double{found.measures.rest_distance} < 1.5 * double{sc_default_rule().neighbours};
+  return found.measures.is_one_piece != 0 && are_neighbours;
+}
+
+// Belly, chest, hips and thighs of one skin: flesh that lies on flesh.
+bool are_soft(const std::vector<BodyPart>& parts, const Penetration& found) {
+  constexpr std::uint8_t kTrunk = 0, kThigh = 3;  // mobilities
+  const auto is_soft = [&](std::uint32_t part) {
+    return parts[part].mobility == kTrunk || parts[part].mobility == kThigh;
+  };
+  return found.measures.is_one_piece != 0 && is_soft(found.part) && is_soft(found.other);
+}
+
+double allowed_fold(const Penetration& found) {
+  return kFoldShare * (double{found.measures.depth} - double{found.fault_depth});
+}
 
 }  // namespace
 
-Goals goals_of(const std::vector<PosePenetration>& before, int frames, const std::vector<BodyPart>& parts,
-               double mm_per_unit, double margin_mm, const std::function<bool(const Event&)>& leave) {
+Goals goals_of(const std::vector<PosePenetration>& before, const std::vector<PosePenetration>& sequence, int frames,
+               const std::vector<BodyPart>& parts, double mm_per_unit, const MendOptions& options,
+               const std::function<bool(const Event&)>& leave) {
   std::map<PenetrationKey, Penetration> at;
   std::vector<FramePenetration> faults;
-  for (const PosePenetration& penetration : before) {
-    at[place_of(penetration)] = penetration.found;
+  for (const PosePenetration& penetration : before) at[place_of(penetration)] = penetration.found;
+  for (const PosePenetration& penetration : sequence) {
     if (is_fault(penetration.found.kind)) faults.push_back({static_cast<int>(penetration.frame), penetration.found});
   }
   std::vector<WorkingEvent> events;
@@ -33,13 +57,15 @@ Goals goals_of(const std::vector<PosePenetration>& before, int frames, const std
     found.to = span.to;
     found.deepest = faults[span.deepest].frame;
     found.depth_mm = mm_per_unit * double{worst.measures.depth};
-    const bool is_fold = worst.kind == SC_CLASS_DEEP_FOLD || worst.part == worst.other;
+    const bool is_fold = worst.part == worst.other || (!options.is_soft_parted && are_soft(parts, worst)) ||
+                         std::all_of(span.penetrations.begin(), span.penetrations.end(),
+                                     [&](std::size_t i) { return faults[i].found.kind == SC_CLASS_DEEP_FOLD; });
     const WorkingState state = leave(found) ? WorkingState::kAccepted
                                : is_fold    ? WorkingState::kFold
                                             : WorkingState::kOpen;
     events.push_back({std::move(found), worst.part, worst.other, state});
   }
-  return {std::move(events), std::move(at), mm_per_unit, margin_mm};
+  return {std::move(events), std::move(at), mm_per_unit, options.margin_mm};
 }
 
 bool Goals::has_open_events() const {
@@ -65,7 +91,7 @@ double Goals::allowed(const PosePenetration& penetration) const {
         penetration.found.kind >= SC_CLASS_PENETRATION && penetration.found.part != penetration.found.other;
     if (is_new) return apart;
   } else if (event->is_open() && penetration.frame >= event->found.from && penetration.frame <= event->found.to) {
-    return apart;
+    return may_fold(penetration.found) ? allowed_fold(penetration.found) : apart;
   }
   const Penetration* known = before({std::round(penetration.frame), penetration.found.part, penetration.found.other});
   return known == nullptr ? 0 : double{known->measures.depth};
@@ -86,15 +112,20 @@ double Goals::too_deep(const PosePenetration& penetration) const {
   return double{penetration.found.measures.depth} - std::max(allowed(penetration), 0.0);
 }
 
-bool Goals::is_worse(const PosePenetration& penetration) const {
-  if (!is_fault(penetration.found.kind)) return false;
+double Goals::worse_by(const PosePenetration& penetration) const {
+  if (!(penetration.found.fault_depth > 0)) return 0;
   const double first = std::floor(penetration.frame) - 1, last = std::ceil(penetration.frame) + 1;
   double most = 0;
+  bool was_fault = false;
   for (double f = first; f <= last; ++f) {
     const Penetration* known = before({f, penetration.found.part, penetration.found.other});
-    if (known != nullptr && is_fault(known->kind)) most = std::max(most, double{known->measures.depth});
+    if (known == nullptr) continue;
+    most = std::max(most, double{known->measures.depth});
+    was_fault |= known->fault_depth > 0;
   }
-  return double{penetration.found.measures.depth} > most + kFoldDeeper / mm_;
+  if (!was_fault) return HUGE_VAL;
+  const double by = double{penetration.found.measures.depth} - most;
+  return by > kFoldDeeper / mm_ + kDeeperShare * most ? by : 0;
 }
 
 std::set<std::pair<std::uint32_t, std::uint32_t>> Goals::harmless() const {

@@ -9,6 +9,7 @@
 
 #include "baker/bind/body_parts.h"
 #include "baker/fix/find_faults.h"
+#include "baker/fix/mend_options.h"
 #include "baker/fix/separations.h"
 #include "baker/fix/working_event.h"
 
@@ -39,8 +40,9 @@ class Goals {
   // Residual: the depth beyond the allowed one. 0 for penetrations that are left alone.
   double too_deep(const PosePenetration& penetration) const;
   bool is_let_be(const PosePenetration& penetration) const;
-  // True if the penetration is deeper than the same two parts were around that time.
-  bool is_worse(const PosePenetration& penetration) const;
+  // How much deeper a fault is than the same two parts were around that time, where that is seen; HUGE_VAL: they were
+  // no fault.
+  double worse_by(const PosePenetration& penetration) const;
   // Pairs of parts that never do worse than lie in layers or intersect as at rest.
   std::set<std::pair<std::uint32_t, std::uint32_t>> harmless() const;
 
@@ -49,9 +51,10 @@ class Goals {
   std::map<PenetrationKey, Penetration> before_;
 };
 
-// Joins the penetrations of a source clip to events. `before`: in all of its frames. `leave` returns true for events
-// that must stay as they are.
-Goals goals_of(const std::vector<PosePenetration>& before, int frames, const std::vector<BodyPart>& parts,
-               double mm_per_unit, double margin_mm, const std::function<bool(const Event&)>& leave);
+// Joins the penetrations of a source clip to events. `before`: in all of its frames, strictly; `sequence`: as `check`
+// finds them. `leave` returns true for events that must stay as they are.
+Goals goals_of(const std::vector<PosePenetration>& before, const std::vector<PosePenetration>& sequence, int frames,
+               const std::vector<BodyPart>& parts, double mm_per_unit, const MendOptions& options,
+               const std::function<bool(const Event&)>& leave);
 
 }  // namespace spherechain::baker

@@ -2,6 +2,7 @@
 #include "baker/fix/look.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "baker/fix/time_windows.h"
@@ -17,9 +18,9 @@ std::vector<double> all_frames(const TurnedClip& clip) {
   return out;
 }
 
-// Frames in windows, and times between frames that have separations. In the first round, all frames.
-std::vector<double> frames_to_measure(const MendState& state, int round) {
-  if (round == 0) return all_frames(state.facts.clip);
+// Frames in windows, and times between frames that have separations. In the first round of a budget, all frames.
+std::vector<double> frames_to_measure(const MendState& state, bool is_first) {
+  if (is_first) return all_frames(state.facts.clip);
   std::set<double> out;
   for (const int f : marked_frames(state.in_window)) out.insert(f);
   for (const auto& [place, separations] : state.separations.all()) out.insert(place.frame);
@@ -44,6 +45,8 @@ void append(const std::vector<PosePenetration>& more, std::vector<PosePenetratio
   to.insert(to.end(), more.begin(), more.end());
 }
 
+bool is_whole(double frame) { return frame == std::floor(frame); }
+
 double greatest_turn(const MendState& state, const WorkingEvent& event) {
   double most = 0;
   const std::size_t count = state.facts.clip.count();
@@ -54,16 +57,24 @@ double greatest_turn(const MendState& state, const WorkingEvent& event) {
 }
 
 void classify(const MendState& state, const std::vector<PosePenetration>& found, WorkingEvent& event) {
-  event.depth_after_mm = 0;
+  event.depth_after_mm = event.depths_before = event.depths_after = 0;
   for (const PosePenetration& penetration : found) {
     if (!event.contains(place_of(penetration)) || !is_fault(penetration.found.kind)) continue;
-    event.depth_after_mm = std::max(event.depth_after_mm, state.facts.mm * double{penetration.found.measures.depth});
+    const double depth = state.facts.mm * double{penetration.found.measures.depth};
+    event.depth_after_mm = std::max(event.depth_after_mm, depth);
+    event.depths_after += is_whole(penetration.frame) ? depth : 0;
+  }
+  for (const auto& [place, before] : state.goals.before()) {
+    event.depths_before +=
+        event.contains(place) && is_fault(before.kind) ? state.facts.mm * double{before.measures.depth} : 0;
   }
   event.turn_degrees = to_degrees(greatest_turn(state, event));
   if (event.is_left_alone()) return;
-  event.state = event.depth_after_mm == 0                                     ? WorkingState::kFreed
-                : event.depth_after_mm < kReducedShare * event.found.depth_mm ? WorkingState::kOpen
-                                                                              : WorkingState::kGivenUp;
+  const bool is_reduced = event.depth_after_mm < kReducedShare * event.found.depth_mm ||
+                          event.depths_after < kReducedShare * event.depths_before;
+  event.state = event.depth_after_mm == 0 ? WorkingState::kFreed
+                : is_reduced              ? WorkingState::kOpen
+                                          : WorkingState::kGivenUp;
 }
 
 }  // namespace
@@ -77,13 +88,15 @@ MendState first_look(const ClipFacts& facts, const std::function<bool(const Even
   FaultFinder finder(facts.animated, clip);
   const std::vector<PosePenetration> found = finder.in_frames(all_frames(clip), none);
   const BodyParts parts = body_parts_of(facts.animated.asset());
-  Goals goals = goals_of(found, clip.frames(), parts.parts, facts.mm, facts.options.margin_mm, leave);
+  Goals goals = goals_of(found, finder.in_sequence(none), clip.frames(), parts.parts, facts.mm, facts.options, leave);
   finder.leave_out(goals.harmless());
   return {facts,
           report,
           std::move(finder),
           std::move(goals),
-          Separations(facts.animated, clip),
+          Separations(facts.animated, clip,
+                      [&facts](std::uint32_t a, std::uint32_t b) { return facts.parts.parting(a, b); }),
+          0,
           none,
           {},
           std::vector<char>(frames, 0),
@@ -92,9 +105,9 @@ MendState first_look(const ClipFacts& facts, const std::function<bool(const Even
           {}};
 }
 
-Look look_in_round(MendState& state, int round) {
+Look look_in_round(MendState& state, int round, bool is_first) {
   Look out;
-  out.found = state.finder.in_frames(frames_to_measure(state, round), state.turns);
+  out.found = state.finder.in_frames(frames_to_measure(state, is_first), state.turns);
   out.residual = add_separations(state, out.found);
   const bool is_due = out.residual == 0 || round % kLookBetween == kLookBetween - 1;
   if (round == 0 || !is_due) return out;
@@ -114,6 +127,13 @@ bool has_deep_contacts(const MendState& state, const std::vector<PosePenetration
 
 std::vector<PosePenetration> look_again(MendState& state) {
   std::vector<PosePenetration> out = state.finder.in_frames(all_frames(state.facts.clip), state.turns);
+  append(state.finder.between(marked_frames(state.in_window), state.turns), out);
+  for (WorkingEvent& event : state.goals.events) classify(state, out, event);
+  return out;
+}
+
+std::vector<PosePenetration> look_as_check(MendState& state) {
+  std::vector<PosePenetration> out = state.finder.in_sequence(state.turns);
   append(state.finder.between(marked_frames(state.in_window), state.turns), out);
   for (WorkingEvent& event : state.goals.events) classify(state, out, event);
   return out;

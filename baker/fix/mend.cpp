@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -23,23 +25,24 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr int kRoundsMax = 24;
+constexpr int kRoundsMax = 24;                // within a budget
+constexpr double kFirstBudget = 25;           // degrees
 constexpr int kFreeRoundsMax = 4;             // rounds without faults in which joints return as far as they can
 constexpr double kStillStep = to_radians(1);  // a round with smaller steps may be the last
 
 // Separates body parts round by round, until all are apart and the joints are at rest, or nothing gets better any more.
-// Returns the number of rounds.
-int separate_parts(MendState& state) {
+// Returns the number of the next round.
+int separate_parts(MendState& state, int first) {
   double step = 0;  // largest turn of a joint in the last round
   bool was_free = false;
-  int free_rounds = 0, round = 0;
-  for (; round < kRoundsMax && (state.goals.has_open_events() || step > kStillStep); ++round) {
-    const Look look = look_in_round(state, round);
+  int free_rounds = 0, round = first;
+  for (; round < first + kRoundsMax && (state.goals.has_open_events() || step > kStillStep); ++round) {
+    const Look look = look_in_round(state, round, round == first);
     state.report(fmt::format("round {}: {:.1f} mm too deep", round + 1, look.residual * state.facts.mm));
     const bool is_free = look.residual == 0;
     if (is_free && was_free && step < kStillStep && !has_deep_contacts(state, look.found)) break;
     if (is_free || free_rounds > 0) {
-      if (round > 0 && ++free_rounds > kFreeRoundsMax) break;
+      if (round > first && ++free_rounds > kFreeRoundsMax) break;
     } else if (!makes_progress(state, look, round)) {
       break;
     }
@@ -49,17 +52,41 @@ int separate_parts(MendState& state) {
   return round;
 }
 
+// Small turns first: events that they do not free are tried again with larger ones.
+int separate_within_budgets(MendState& state) {
+  const double most = to_radians(state.facts.options.budget_degrees);
+  int rounds = 0;
+  for (double budget = to_radians(kFirstBudget); state.goals.has_open_events(); budget *= 2) {
+    state.budget = std::min(budget, most);
+    rounds = separate_parts(state, rounds);
+    const bool is_left = reopen_events(state) || state.least.value > 0;
+    state.least = {};
+    if (state.budget == most || !is_left) break;
+  }
+  return rounds;
+}
+
+std::set<int> turned_frames(const MendState& state) {
+  std::set<int> out;
+  for (std::size_t i = 0; i < state.turns.size(); ++i) {
+    if (!state.turns[i].isZero(0)) out.insert(static_cast<int>(i / state.facts.clip.count()));
+  }
+  return out;
+}
+
 }  // namespace
 
 Mend mend_clip(const AnimatedAsset& animated, const Roles& roles, const ClipFrames& clip, const MendOptions& options,
                const std::function<bool(const Event&)>& leave, const std::function<void(const std::string&)>& report) {
   const ClipFacts facts = clip_facts(animated, roles, clip, options);
   MendState state = first_look(facts, leave, report);
-  const int rounds = separate_parts(state);
+  const int rounds = separate_within_budgets(state);
   take_best_rounds(state);
-  calm_turns(facts.clip, contiguous_runs(state.in_window, facts.loops), facts.height, facts.loops, state.turns);
+  calm_turns(facts.clip, facts.height, facts.loops, state.turns);
+  state.in_window = windows_around(turned_frames(state), facts.clip, facts.loops);
   state.finder.leave_out({});  // corrections must not add faults of pairs that were harmless
-  const std::vector<PosePenetration> after = take_back_turns(state);
+  take_back_turns(state);
+  const std::vector<PosePenetration> after = look_as_check(state);
   state.finder.leave_out(state.goals.harmless());
   std::vector<MendedEvent> events = mended_events(state);
   Mend out = compared_result(state, after);

@@ -8,16 +8,12 @@
 
 #include "baker/events/event.h"
 #include "baker/fix/compare.h"
+#include "baker/fix/mend_options.h"
 #include "baker/fix/turned_clip.h"
 #include "baker/play/play.h"
 #include "baker/roles/roles.h"
 
 namespace spherechain::baker {
-
-struct MendOptions {
-  double budget_degrees = 25;  // largest turn of a joint for one event
-  double margin_mm = 1.5;      // distance of separated parts
-};
 
 // The last three say why a fault stayed about as deep: a joint would exceed the budget, or the range of an elbow or
 // knee; or every way out shakes or causes other penetrations.

@@ -49,6 +49,7 @@ struct MendState {
   FaultFinder finder;
   Goals goals;
   Separations separations;
+  double budget = 0;  // radians that a joint may turn in this pass
   Turns turns;
   std::map<std::pair<int, Index>, Vec3> target_turns;  // by frame and joint: a lower bound
   std::vector<char> in_window;                         // by frame: 1 if its joints may turn

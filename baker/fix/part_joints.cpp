@@ -9,7 +9,7 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kCheap = 2.1;  // times the cheapest
+constexpr double kCheap = 2.1, kDear = 4.1;  // times the cheapest
 
 }  // namespace
 
@@ -26,16 +26,20 @@ PartJoints::PartJoints(const AnimatedAsset& animated, const TurnedClip& clip, co
   }
 }
 
-std::set<Index> PartJoints::between(std::uint32_t a, std::uint32_t b) const {
+std::set<Index> PartJoints::cheap(std::uint32_t a, std::uint32_t b, double most, const std::set<Index>& without) const {
   const std::set<Index> one(above_[a].begin(), above_[a].end()), other(above_[b].begin(), above_[b].end());
   std::set<Index> out;
   std::set_symmetric_difference(one.begin(), one.end(), other.begin(), other.end(), std::inserter(out, out.end()));
-  std::erase_if(out, [&](Index joint) { return held_.contains(joint); });
+  std::erase_if(out, [&](Index joint) { return without.contains(joint); });
   double least = HUGE_VAL;
   for (const Index joint : out) least = std::min(least, costs_[joint]);
-  std::erase_if(out, [&](Index joint) { return costs_[joint] > kCheap * least; });
+  std::erase_if(out, [&](Index joint) { return costs_[joint] > most * least; });
   return out;
 }
+
+std::set<Index> PartJoints::parting(std::uint32_t a, std::uint32_t b) const { return cheap(a, b, kDear, {}); }
+
+std::set<Index> PartJoints::between(std::uint32_t a, std::uint32_t b) const { return cheap(a, b, kCheap, held_); }
 
 std::vector<char> PartJoints::moved_by(const std::set<Index>& joints) const {
   std::vector<char> out;

@@ -18,12 +18,17 @@ class PartJoints {
   PartJoints(const AnimatedAsset& animated, const TurnedClip& clip, const std::vector<Index>& feet);
 
   const std::vector<Index>& above(std::uint32_t part) const { return above_[part]; }
-  // Cheap joints that move only one of the two parts. Joints above a foot are left out.
+  // Joints that move only one of the two parts, and are not far dearer than the cheapest of them: the trunk does not
+  // move for an arm.
+  std::set<Index> parting(std::uint32_t a, std::uint32_t b) const;
+  // The cheap ones among them. Joints above a foot are left out.
   std::set<Index> between(std::uint32_t a, std::uint32_t b) const;
   // Marks each part that one of these joints moves.
   std::vector<char> moved_by(const std::set<Index>& joints) const;
 
  private:
+  std::set<Index> cheap(std::uint32_t a, std::uint32_t b, double most, const std::set<Index>& without) const;
+
   std::vector<std::vector<Index>> above_;  // by part
   std::vector<double> costs_;              // by joint, along its cheapest axis
   std::set<Index> held_;

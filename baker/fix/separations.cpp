@@ -65,6 +65,7 @@ void Separations::add_constraints(double weight, const Turns& turns, std::vector
     const std::vector<Vec3> now = clip_.turns_at(place.frame, turns);
     const double share = place.frame - std::floor(place.frame);
     const int first = static_cast<int>(place.frame);
+    const std::set<Index> joints = joints_of_(place.part, place.other);
     for (const Separation& separation : separations) {
       const auto motion = [&](const SkinSpot& spot) {
         return motion_of(clip_, pose, animated_.character().source_positions, animated_.weights(), spot, now.data());
@@ -77,6 +78,7 @@ void Separations::add_constraints(double weight, const Turns& turns, std::vector
       std::map<Index, Vec3> by;
       const auto add = [&](const SpotMotion& of, double sign) {
         for (const auto& [joint, moves] : of.by_joint) {
+          if (!joints.contains(joint)) continue;
           by.try_emplace(joint, Vec3::Zero()).first->second += sign * moves.transpose() * separation.way;
         }
       };

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <set>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "baker/fix/solve.h"
@@ -34,7 +37,10 @@ struct Separation {
 // Separations of all penetrations found so far. They stay, so that separated parts do not come back.
 class Separations {
  public:
-  Separations(const AnimatedAsset& animated, const TurnedClip& clip) : animated_(animated), clip_(clip) {}
+  // `joints_of`: the joints that may turn to part two body parts.
+  using JointsOf = std::function<std::set<Index>(std::uint32_t part, std::uint32_t other)>;
+  Separations(const AnimatedAsset& animated, const TurnedClip& clip, JointsOf joints_of)
+      : animated_(animated), clip_(clip), joints_of_(std::move(joints_of)) {}
 
   // Adds a measured penetration. Ignored if its direction differs from a separation that has not reached its target.
   void add(const PenetrationKey& place, const Penetration& found, double target, bool is_shallow, const Turns& turns);
@@ -55,6 +61,7 @@ class Separations {
 
   const AnimatedAsset& animated_;
   const TurnedClip& clip_;
+  JointsOf joints_of_;
   std::map<PenetrationKey, std::vector<Separation>> of_;
 };
 

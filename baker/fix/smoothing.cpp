@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+
+#include "baker/fix/time_windows.h"
 
 namespace spherechain::baker {
 namespace {
@@ -12,86 +13,129 @@ namespace {
 constexpr double kShaky = 1.5;        // ratio of the jerk to that of the source clip
 constexpr double kCalm = 5;           // heights per second^3: an invisible jerk
 constexpr double kMovedAtAll = 2e-3;  // heights
-constexpr double kSmoothingMax = 4;   // frames
+constexpr double kStepMost = 0.01;    // heights that a joint moves further in a frame than before
+constexpr double kStepShare = 0.25;   // of its own step: where the clip jumps, more is not seen
+constexpr double kSpread = 0.02;      // radians a frame: the slope of turns that are spread
+constexpr int kSmoothings = 4;        // with a Gaussian of 1, 2, 4, ... frames
+constexpr int kFades = 10;            // to this share each, then to nothing
+constexpr double kFade = 0.85;
 
-}  // namespace
-
-void fade_out(const TurnedClip& clip, Index joint, const std::vector<char>& fails, double seconds, bool loops,
-              Turns& turns) {
-  const double pad = seconds * clip.fps();
-  for (std::size_t f = 0; f < fails.size(); ++f) {
+// 1 in the marked frames, falling to 0 within `frames` of them.
+std::vector<double> shares_around(const std::vector<char>& marked, double frames, bool loops) {
+  std::vector<double> out;
+  const auto count = static_cast<int>(marked.size()), reach = static_cast<int>(std::ceil(frames));
+  for (int f = 0; f < count; ++f) {
     double near = HUGE_VAL;
-    for (std::size_t g = 0; g < fails.size(); ++g) {
-      if (fails[g] == 0) continue;
-      const double apart = std::abs(static_cast<double>(f) - static_cast<double>(g));
-      near = std::min({near, apart, loops ? static_cast<double>(fails.size() - 1) - apart : apart});
+    for (int d = -reach; d <= reach; ++d) {
+      int g = f + d;
+      if (loops && count > 1) g = ((g % (count - 1)) + count - 1) % (count - 1);
+      if (g >= 0 && g < count && marked[static_cast<std::size_t>(g)] != 0) near = std::min(near, std::abs(double(d)));
     }
-    const double share = std::clamp((near - pad) / pad, 0.0, 1.0);
-    turns[f * clip.count() + joint] *= share * share * (3 - 2 * share);
+    const double share = std::clamp(1 - near / frames, 0.0, 1.0);
+    out.push_back(share * share * (3 - 2 * share));
+  }
+  return out;
+}
+
+// Makes turns around the marked frames rise and fall more slowly, by turning more where they are small.
+void spread(const TurnedClip& clip, Index joint, const std::vector<double>& shares, double most, Turns& turns) {
+  const auto frames = static_cast<std::size_t>(clip.frames());
+  const auto at = [&](std::size_t f) -> Vec3& { return turns[f * clip.count() + joint]; };
+  const auto pull = [&](std::size_t f, const Vec3& from) {
+    const Vec3 apart = at(f) - from;
+    if (shares[f] == 0 || at(f).norm() > from.norm() || apart.norm() <= most) return;
+    at(f) = clip.within_limits(static_cast<int>(f), joint, at(f) + shares[f] * (most / apart.norm() - 1) * apart, 4);
+  };
+  for (std::size_t f = 1; f < frames; ++f) pull(f, at(f - 1));
+  for (std::size_t f = frames - 1; f-- > 0;) pull(f, at(f + 1));
+}
+
+// Smooths a joint's turns with a Gaussian whose standard deviation is `frames` times each frame's share.
+void smooth(const TurnedClip& clip, Index joint, const std::vector<double>& shares, double frames, bool loops,
+            Turns& turns) {
+  std::vector<Vec3> from;
+  for (std::size_t i = joint; i < turns.size(); i += clip.count()) from.push_back(turns[i]);
+  const int last = clip.frames() - 1;
+  for (int f = 0; f <= last; ++f) {
+    const double width = frames * shares[static_cast<std::size_t>(f)];
+    if (width < 0.1) continue;
+    const int reach = static_cast<int>(std::ceil(3 * width));
+    Vec3 sum = Vec3::Zero();
+    double weights = 0;
+    for (int d = -reach; d <= reach; ++d) {
+      int g = f + d;
+      if (loops && last > 0) g = ((g % last) + last) % last;
+      const double weight = std::exp(-0.5 * d * d / (width * width));
+      sum += weight * from[static_cast<std::size_t>(std::clamp(g, 0, last))];
+      weights += weight;
+    }
+    turns[static_cast<std::size_t>(f) * clip.count() + joint] = sum / weights;
   }
 }
 
-std::set<Index> shaking_joints(const TurnedClip& clip, const std::vector<std::size_t>& span, const Turns& turns,
-                               double height) {
-  std::set<Index> out;
+}  // namespace
+
+void fade_out(const TurnedClip& clip, Index joint, const std::vector<char>& marked, double seconds, double least,
+              bool loops, Turns& turns) {
+  const std::vector<double> shares = shares_around(marked, seconds * clip.fps() + 1, loops);
+  for (std::size_t f = 0; f < shares.size(); ++f) turns[f * clip.count() + joint] *= 1 - (1 - least) * shares[f];
+}
+
+MarkedTurns shaking_turns(const TurnedClip& clip, const Turns& turns, double height) {
+  const auto frames = static_cast<std::size_t>(clip.frames());
   const Turns none(turns.size(), Vec3::Zero());
-  std::map<std::size_t, std::array<std::vector<Affine>, 2>> poses;  // by frame: before and after
-  const auto axes = [&](std::size_t frame, std::size_t k, Index joint) {
-    auto& both = poses[frame];
-    if (both[0].empty()) {
-      both = {clip.pose(static_cast<double>(frame), none).axes, clip.pose(static_cast<double>(frame), turns).axes};
-    }
-    return Vec3(both[k][joint].translation());
-  };
+  std::array<std::vector<std::vector<Affine>>, 2> axes;  // before and after, by frame
+  for (int f = 0; f < clip.frames(); ++f) {
+    axes[0].push_back(clip.pose(f, none).axes);
+    axes[1].push_back(clip.pose(f, turns).axes);
+  }
+  const auto pad = static_cast<std::size_t>(std::ceil(kWindowPad * clip.fps()));
+  MarkedTurns out;
   for (Index j = 0; j < clip.count(); ++j) {
-    double sums[2] = {};
-    double count = 0;
-    for (const std::size_t f : span) {
-      if (f < 3 || (axes(f, 0, j) - axes(f, 1, j)).norm() < kMovedAtAll * height) continue;
-      ++count;
-      for (std::size_t k = 0; k < 2; ++k) {
-        sums[k] += (axes(f, k, j) - 3 * axes(f - 1, k, j) + 3 * axes(f - 2, k, j) - axes(f - 3, k, j)).norm();
+    const auto at = [&](std::size_t k, std::size_t f) { return Vec3(axes[k][f][j].translation()); };
+    std::vector<std::array<double, 3>> jerks(frames, {0, 0, 0});  // before, after, and what is not seen
+    std::vector<char> marked(frames, 0);
+    for (std::size_t f = 1; f < frames; ++f) {
+      const Vec3 moved = at(1, f) - at(0, f);
+      const double own = (at(0, f) - at(0, f - 1)).norm(), now = (at(1, f) - at(1, f - 1)).norm();
+      if (now - own > std::max(kStepMost * height, kStepShare * own)) {
+        marked[f] = marked[f - 1] = 1;
       }
+      if (f < 3 || moved.norm() < kMovedAtAll * height) continue;
+      for (std::size_t k = 0; k < 2; ++k) {
+        jerks[f][k] = (at(k, f) - 3 * at(k, f - 1) + 3 * at(k, f - 2) - at(k, f - 3)).norm();
+      }
+      jerks[f][2] = kCalm * height / std::pow(clip.fps(), 3);
     }
-    if (sums[1] > kShaky * sums[0] + kCalm * count * height / std::pow(clip.fps(), 3)) {
-      const std::vector<Index> all = clip.above_joint(j);
-      out.insert(all.begin(), all.end());
+    for (std::size_t f = 0; f < frames; ++f) {
+      double sums[3] = {};
+      for (std::size_t g = f - std::min(f, pad); g <= std::min(f + pad, frames - 1); ++g) {
+        for (std::size_t k = 0; k < 3; ++k) sums[k] += jerks[g][k];
+      }
+      if (sums[1] > kShaky * sums[0] + sums[2]) marked[f] = 1;
+    }
+    if (std::find(marked.begin(), marked.end(), 1) == marked.end()) continue;
+    for (const Index above : clip.above_joint(j)) {
+      std::vector<char>& all = out.try_emplace(above, frames, 0).first->second;
+      for (std::size_t f = 0; f < frames; ++f) all[f] = static_cast<char>(all[f] | marked[f]);
     }
   }
   return out;
 }
 
-void smooth(const TurnedClip& clip, Index joint, const std::vector<std::size_t>& span, double frames, bool loops,
-            Turns& turns) {
-  std::vector<Vec3> from;
-  for (std::size_t i = joint; i < turns.size(); i += clip.count()) from.push_back(turns[i]);
-  const int reach = static_cast<int>(std::ceil(3 * frames)), last = clip.frames() - 1;
-  for (const std::size_t f : span) {
-    Vec3 sum = Vec3::Zero();
-    double weights = 0;
-    for (int d = -reach; d <= reach; ++d) {
-      int g = static_cast<int>(f) + d;
-      if (loops && last > 0) g = ((g % last) + last) % last;
-      if (g < 0 || g > last) continue;
-      const double weight = std::exp(-0.5 * d * d / (frames * frames));
-      sum += weight * from[static_cast<std::size_t>(g)];
-      weights += weight;
+void calm_turns(const TurnedClip& clip, double height, bool loops, Turns& turns) {
+  MarkedTurns shaking = shaking_turns(clip, turns, height);
+  const double pad = kWindowPad * clip.fps();
+  for (int attempt = 0; attempt <= kSmoothings + kFades && !shaking.empty(); ++attempt) {
+    for (const auto& [joint, marked] : shaking) {
+      if (attempt >= kSmoothings) {
+        fade_out(clip, joint, marked, kWindowPad, attempt == kSmoothings + kFades ? 0 : kFade, loops, turns);
+        continue;
+      }
+      spread(clip, joint, shares_around(marked, 4 * pad, loops), kSpread / (1 << attempt), turns);
+      smooth(clip, joint, shares_around(marked, 2 * pad, loops), 1 << attempt, loops, turns);
     }
-    turns[f * clip.count() + joint] = sum / weights;
-  }
-}
-
-void calm_turns(const TurnedClip& clip, const std::vector<std::vector<std::size_t>>& runs, double height, bool loops,
-                Turns& turns) {
-  for (const std::vector<std::size_t>& run : runs) {
-    std::set<Index> joints = shaking_joints(clip, run, turns, height);
-    for (double frames = 1; frames <= kSmoothingMax && !joints.empty(); frames *= 2) {
-      for (const Index joint : joints) smooth(clip, joint, run, frames, loops, turns);
-      joints = shaking_joints(clip, run, turns, height);
-    }
-    for (const Index joint : joints) {
-      for (const std::size_t f : run) turns[f * clip.count() + joint].setZero();
-    }
+    shaking = shaking_turns(clip, turns, height);
   }
 }
 

@@ -2,28 +2,26 @@
 #pragma once
 
 #include <cstddef>
-#include <set>
+#include <map>
 #include <vector>
 
 #include "baker/fix/turned_clip.h"
 
 namespace spherechain::baker {
 
-// Fades out a joint's turns around failed frames: zero up to `seconds` away, full strength at twice that.
-void fade_out(const TurnedClip& clip, Index joint, const std::vector<char>& fails, double seconds, bool loops,
-              Turns& turns);
+// By joint: 1 for each frame in which something is wrong with its turn.
+using MarkedTurns = std::map<Index, std::vector<char>>;
 
-// Joints whose turns add shaking: a joint below them has far more jerk than before. `height` is the character's.
-std::set<Index> shaking_joints(const TurnedClip& clip, const std::vector<std::size_t>& span, const Turns& turns,
-                               double height);
+// Takes a joint's turns down to a share of `least` in the marked frames; they come back within `seconds` around.
+void fade_out(const TurnedClip& clip, Index joint, const std::vector<char>& marked, double seconds, double least,
+              bool loops, Turns& turns);
 
-// Smooths a joint's turns in a span with a Gaussian whose standard deviation is `frames`.
-void smooth(const TurnedClip& clip, Index joint, const std::vector<std::size_t>& span, double frames, bool loops,
-            Turns& turns);
+// Turns that are seen as turns: around a frame, a joint below has far more jerk than before, or from one frame to the
+// next it moves further against the source clip than a hundredth of the character's height.
+MarkedTurns shaking_turns(const TurnedClip& clip, const Turns& turns, double height);
 
-// Smooths the turns in each of these runs of frames until they add no shaking. Removes turns that still shake then,
-// because shaking is worse than penetrating. `height` is the character's.
-void calm_turns(const TurnedClip& clip, const std::vector<std::vector<std::size_t>>& runs, double height, bool loops,
-                Turns& turns);
+// Spreads and smooths turns where they shake. Fades out what still shakes then, because shaking is worse than
+// penetrating.
+void calm_turns(const TurnedClip& clip, double height, bool loops, Turns& turns);
 
 }  // namespace spherechain::baker

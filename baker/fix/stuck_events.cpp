@@ -57,8 +57,7 @@ bool search_way_out(MendState& state, std::size_t event, int round) {
   for (const auto& [at, turn] : state.target_turns) {
     start[static_cast<std::size_t>(at.first) * clip.count() + at.second] = turn;
   }
-  const double budget = to_radians(state.facts.options.budget_degrees);
-  set_target_turns(state, limb, find_way_out(clip, limb, budget, start, residuals_of(state, limb)));
+  set_target_turns(state, limb, find_way_out(clip, limb, state.budget, start, residuals_of(state, limb)));
   for (const std::size_t e : limb.events) {
     state.goals.events[e].least = {HUGE_VAL, round + 1};
     state.goals.events[e].was_searched = true;
@@ -84,6 +83,18 @@ bool makes_progress(MendState& state, const Look& look, int round) {
     state.separations.forget([&](const PenetrationKey& place) { return event.contains(place); });
   }
   return round - state.least.round < 2 * kPatience;
+}
+
+bool reopen_events(MendState& state) {
+  bool is_one = false;
+  for (WorkingEvent& event : state.goals.events) {
+    event.was_searched = false;
+    event.least = {};
+    if (event.state != WorkingState::kGivenUp) continue;
+    event.state = WorkingState::kOpen;
+    is_one = true;
+  }
+  return is_one;
 }
 
 }  // namespace spherechain::baker

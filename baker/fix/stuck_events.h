@@ -9,4 +9,7 @@ namespace spherechain::baker {
 // that never improved. Returns false if the whole clip makes no progress any more.
 bool makes_progress(MendState& state, const Look& look, int round);
 
+// Opens the events again that were given up, for another budget. Returns false if there were none.
+bool reopen_events(MendState& state);
+
 }  // namespace spherechain::baker

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "baker/fix/take_back.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <map>
+#include <cmath>
+#include <set>
 
 #include "baker/fix/look.h"
 #include "baker/fix/smoothing.h"
@@ -11,85 +14,118 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr int kFadeOuts = 3;  // tries to fade out turns that made something worse, in ever wider windows
+constexpr int kHalfTries = 2;  // tries to halve the turns that made something worse; later ones take them away
+constexpr int kTries = 10;     // in all, in ever wider windows
+constexpr double kFootMoves = 1e-3, kFootTurns = 5e-3;  // heights; a share of the axes' size
+constexpr double kWorth = 3;                            // times the depth that is added: so much less is worth it
+constexpr double kWidest = 4;                           // times kWindowPad
 
-// By joint: 1 for each frame in which its turn fails.
-using FailedTurns = std::map<Index, std::vector<char>>;
+// Sums of the fault depths of parts that are moved, by frame.
+struct Depths {
+  std::vector<double> before, after;
+};
 
-bool turns_in(const MendState& state, const WorkingEvent& event, Index joint) {
-  const std::size_t count = state.facts.clip.count();
-  for (int f = event.from(); f <= event.to(); ++f) {
-    if (!state.turns[static_cast<std::size_t>(f) * count + joint].isZero(0)) return true;
-  }
-  return false;
-}
-
-// True if no event of the limb got better.
-bool is_in_vain(const MendState& state, const LimbInTrouble& limb) {
-  return std::all_of(limb.events.begin(), limb.events.end(),
-                     [&](std::size_t e) { return state.goals.events[e].state == WorkingState::kGivenUp; });
-}
-
-// Turns fail if a part that they move got worse than before, or if they improved no event.
-FailedTurns failed_turns(const MendState& state, const std::vector<PosePenetration>& found) {
-  FailedTurns out;
-  const auto fail = [&](Index joint, int from, int to) {
-    std::vector<char>& frames = out.try_emplace(joint, state.in_window.size(), 0).first->second;
-    for (int f = from; f <= to; ++f) frames[static_cast<std::size_t>(f)] = 1;
+Depths depths_of(const MendState& state, const std::vector<char>& moves, const std::vector<PosePenetration>& found) {
+  Depths out{std::vector<double>(state.in_window.size(), 0), std::vector<double>(state.in_window.size(), 0)};
+  const auto add = [&](const PenetrationKey& place, const Penetration& of, std::vector<double>& to) {
+    if (moves[place.part] == 0 && moves[place.other] == 0) return;
+    to[static_cast<std::size_t>(place.frame)] += double{of.fault_depth};
   };
-  for (const PosePenetration& penetration : found) {
-    if (!state.goals.is_worse(penetration)) continue;
-    const int frame = static_cast<int>(penetration.frame);
-    for (const std::uint32_t part : {penetration.found.part, penetration.found.other}) {
-      for (const Index joint : state.facts.parts.above(part)) fail(joint, frame, frame);
-    }
-  }
-  for (std::size_t e = 0; e < state.goals.events.size(); ++e) {
-    const WorkingEvent& event = state.goals.events[e];
-    if (event.state != WorkingState::kGivenUp || event.turn_degrees == 0) continue;
-    const LimbInTrouble limb = limb_in_trouble(state.goals, state.facts.parts, e,
-                                               [](const WorkingEvent& other) { return !other.is_left_alone(); });
-    if (!is_in_vain(state, limb)) continue;
-    for (const Index joint : limb.joints) {
-      if (turns_in(state, event, joint)) fail(joint, event.from(), event.to());
-    }
+  for (const auto& [place, of] : state.goals.before()) add(place, of, out.before);
+  for (const PosePenetration& one : found) {
+    if (one.frame == std::floor(one.frame)) add(place_of(one), one.found, out.after);
   }
   return out;
 }
 
-void fade_out_all(MendState& state, const FailedTurns& failed, double seconds) {
-  for (const auto& [joint, frames] : failed) {
-    fade_out(state.facts.clip, joint, frames, seconds, state.facts.loops, state.turns);
+void mark(MarkedTurns& failed, Index joint, std::size_t frame, std::size_t frames) {
+  failed.try_emplace(joint, frames, 0).first->second[frame] = 1;
+}
+
+// Turns fail if a part that they move got worse than before, unless the parts that they move got far better in all.
+void add_worse(const MendState& state, const std::vector<PosePenetration>& found, MarkedTurns& failed) {
+  for (const PosePenetration& one : found) {
+    const double by = state.goals.worse_by(one);
+    if (by == 0) continue;
+    const std::set<Index> joints = state.facts.parts.parting(one.found.part, one.found.other);
+    const Depths depths = depths_of(state, state.facts.parts.moved_by(joints), found);
+    const auto frame = static_cast<std::size_t>(one.frame);
+    if (depths.before[frame] - depths.after[frame] > kWorth * by) continue;
+    for (const std::uint32_t part : {one.found.part, one.found.other}) {
+      for (const Index joint : state.facts.parts.above(part)) mark(failed, joint, frame, state.in_window.size());
+    }
   }
 }
 
-bool is_marked_in(const std::vector<char>& frames, const std::vector<std::size_t>& run) {
-  return std::any_of(run.begin(), run.end(), [&](std::size_t f) { return frames[f] != 0; });
+// Turns fail if around a frame they make their limb's faults hardly better.
+void add_vain(const MendState& state, const std::vector<PosePenetration>& found, MarkedTurns& failed) {
+  const auto pad = static_cast<std::size_t>(std::ceil(kWindowPad * state.facts.clip.fps()));
+  const std::size_t frames = state.in_window.size();
+  for (std::size_t e = 0; e < state.goals.events.size(); ++e) {
+    const WorkingEvent& event = state.goals.events[e];
+    if (event.is_left_alone() || event.state == WorkingState::kFreed || event.turn_degrees == 0) continue;
+    const LimbInTrouble limb = limb_in_trouble(state.goals, state.facts.parts, e,
+                                               [](const WorkingEvent& other) { return !other.is_left_alone(); });
+    const Depths depths = depths_of(state, limb.moves, found);
+    for (auto f = static_cast<std::size_t>(event.from()); f <= static_cast<std::size_t>(event.to()); ++f) {
+      double before = 0, after = 0;
+      for (std::size_t g = f - std::min(f, pad); g <= std::min(f + pad, frames - 1); ++g) {
+        before += depths.before[g];
+        after += depths.after[g];
+      }
+      for (const Index joint : limb.joints) {
+        const bool is_turned = !state.turns[f * state.facts.clip.count() + joint].isZero(0);
+        if (is_turned && after >= kReducedShare * before) mark(failed, joint, f, frames);
+      }
+    }
+  }
+}
+
+// Turns fail if a foot does not keep its place and direction.
+void add_moved_feet(const MendState& state, MarkedTurns& failed) {
+  const TurnedClip& clip = state.facts.clip;
+  const Turns none(state.turns.size(), Vec3::Zero());
+  for (const int f : marked_frames(state.in_window)) {
+    const TurnedClip::Pose before = clip.pose(f, none), after = clip.pose(f, state.turns);
+    for (const Index foot : state.facts.feet) {
+      const Affine &a = before.axes[foot], &b = after.axes[foot];
+      const bool is_moved = (a.translation() - b.translation()).norm() > kFootMoves * state.facts.height ||
+                            (a.linear() - b.linear()).norm() > kFootTurns * a.linear().norm();
+      if (!is_moved) continue;
+      for (const Index joint : clip.above_joint(foot)) {
+        mark(failed, joint, static_cast<std::size_t>(f), state.in_window.size());
+      }
+    }
+  }
 }
 
 // Removes failed turns from the whole run of frames.
-void remove_all(MendState& state, const FailedTurns& failed) {
+void remove_all(MendState& state, const MarkedTurns& failed) {
   const std::vector<std::vector<std::size_t>> runs = contiguous_runs(state.in_window, state.facts.loops);
   for (const auto& [joint, frames] : failed) {
     for (const std::vector<std::size_t>& run : runs) {
-      if (!is_marked_in(frames, run)) continue;
+      if (std::none_of(run.begin(), run.end(), [&](std::size_t f) { return frames[f] != 0; })) continue;
       for (const std::size_t f : run) state.turns[f * state.facts.clip.count() + joint].setZero();
     }
   }
 }
 
-std::vector<PosePenetration> take_back_failed_turns(MendState& state) {
-  for (int attempt = 1; attempt <= kFadeOuts + 1; ++attempt) {
-    std::vector<PosePenetration> found = look_again(state);
-    const FailedTurns failed = failed_turns(state, found);
-    if (failed.empty()) return found;
-    if (attempt <= kFadeOuts) {
-      fade_out_all(state, failed, kWindowPad * attempt / kFadeOuts);
-    } else {
-      remove_all(state, failed);
+void take_back_failed_turns(MendState& state) {
+  for (int attempt = 1; attempt <= kTries; ++attempt) {
+    const std::vector<PosePenetration> found = look_again(state);
+    MarkedTurns failed;
+    add_worse(state, found, failed);
+    add_moved_feet(state, failed);
+    if (attempt > kHalfTries && attempt < kTries) add_vain(state, found, failed);
+    if (failed.empty() && attempt > kHalfTries) return;
+    if (attempt == kTries) return remove_all(state, failed);
+    state.report(fmt::format("taking back what makes it worse, {} of {}", attempt, kTries));
+    const double seconds = kWindowPad * std::pow(kWidest, attempt / double{kTries});
+    for (const auto& [joint, frames] : failed) {
+      fade_out(state.facts.clip, joint, frames, seconds, attempt <= kHalfTries ? 0.5 : 0, state.facts.loops,
+               state.turns);
     }
   }
-  return look_again(state);
 }
 
 bool improves_in(const WorkingEvent& event, const std::vector<std::size_t>& run) {
@@ -98,29 +134,24 @@ bool improves_in(const WorkingEvent& event, const std::vector<std::size_t>& run)
   return std::any_of(run.begin(), run.end(), [&](std::size_t f) { return f >= from && f <= to; });
 }
 
-// Removes the turns of each run of frames in which no event improved. Returns false if there were none.
-bool take_back_useless_turns(MendState& state) {
-  bool turned = false;
+// Removes the turns of each run of frames in which no event improved.
+void take_back_useless_turns(MendState& state) {
   const std::size_t count = state.facts.clip.count();
   for (const std::vector<std::size_t>& run : contiguous_runs(state.in_window, state.facts.loops)) {
     const auto improves = [&](const WorkingEvent& event) { return improves_in(event, run); };
     if (std::any_of(state.goals.events.begin(), state.goals.events.end(), improves)) continue;
     for (const std::size_t f : run) {
-      for (std::size_t i = f * count; i < (f + 1) * count; ++i) {
-        turned = turned || !state.turns[i].isZero(0);
-        state.turns[i].setZero();
-      }
+      for (std::size_t i = f * count; i < (f + 1) * count; ++i) state.turns[i].setZero();
     }
   }
-  return turned;
 }
 
 }  // namespace
 
-std::vector<PosePenetration> take_back_turns(MendState& state) {
-  std::vector<PosePenetration> out = take_back_failed_turns(state);
-  if (take_back_useless_turns(state)) out = look_again(state);
-  return out;
+void take_back_turns(MendState& state) {
+  take_back_failed_turns(state);
+  (void)look_again(state);
+  take_back_useless_turns(state);
 }
 
 }  // namespace spherechain::baker

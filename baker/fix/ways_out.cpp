@@ -11,6 +11,7 @@
 namespace spherechain::baker {
 namespace {
 
+constexpr int kFramesMax = 40;   // frames of a limb that are searched; between them, turns are blended
 constexpr int kLevels = 6;       // number of angles to try, up to the budget
 constexpr int kMoves = 3;        // largest number of joints to turn one after another
 constexpr int kHalvings = 3;     // bisections of the last step to the way out
@@ -42,19 +43,25 @@ class Search {
  public:
   Search(const TurnedClip& clip, const LimbInTrouble& limb, double budget, const Turns& start,
          const EvaluatePoses& evaluate)
-      : clip_(clip), limb_(limb), budget_(budget), start_(start), evaluate_(evaluate) {}
+      : clip_(clip), limb_(limb), budget_(budget), start_(start), evaluate_(evaluate) {
+    const int step = (limb.to - limb.from) / kFramesMax + 1;
+    std::set<int> frames(limb.worst.begin(), limb.worst.end());
+    for (int f = limb.from; f < limb.to; f += step) frames.insert(f);
+    frames.insert(limb.to);
+    frames_.assign(frames.begin(), frames.end());
+  }
 
   std::map<int, std::vector<Vec3>> run() {
     follow(none(limb_.from));
     for (const int frame : limb_.worst) {
-      if (best(frame).left > 0) add_way(frame);
+      if (ways_ < kWays && best(frame).left > 0) add_way(frame);
     }
     // Adds candidates for the frames that none of them frees.
     std::set<int> hopeless;
     while (ways_ < kWays) {
       int worst = -1;
       double most = 0;
-      for (int f = limb_.from; f <= limb_.to; ++f) {
+      for (const int f : frames_) {
         if (hopeless.contains(f) || best(f).left <= most) continue;
         most = best(f).left;
         worst = f;
@@ -63,7 +70,7 @@ class Search {
       add_way(worst);
       if (best(worst).left > 0) hopeless.insert(worst);
     }
-    return steadiest();
+    return blended(steadiest());
   }
 
  private:
@@ -112,17 +119,16 @@ class Search {
     const double steady = std::pow(kSteadyWay * clip_.fps(), 2);
     std::vector<std::vector<double>> sums;
     std::vector<std::vector<std::size_t>> from;
-    for (int f = limb_.from; f <= limb_.to; ++f) {
-      const std::vector<Found>& here = found_.at(f);
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
       sums.emplace_back();
       from.emplace_back();
-      for (const Found& to : here) {
-        double least = sums.size() == 1 ? 0 : HUGE_VAL;
+      for (const Found& to : found_.at(frames_[i])) {
+        double least = i == 0 ? 0 : HUGE_VAL;
         std::size_t chosen = 0;
-        for (std::size_t k = 0; sums.size() > 1 && k < found_.at(f - 1).size(); ++k) {
+        for (std::size_t k = 0; i > 0 && k < sums[i - 1].size(); ++k) {
           std::vector<Vec3> change = to.turns;
-          for (const Index joint : limb_.joints) change[joint] -= found_.at(f - 1)[k].turns[joint];
-          const double sum = sums[sums.size() - 2][k] + steady * cost(change);
+          for (const Index joint : limb_.joints) change[joint] -= found_.at(frames_[i - 1])[k].turns[joint];
+          const double sum = sums[i - 1][k] + steady * cost(change) / (frames_[i] - frames_[i - 1]);
           if (sum < least) chosen = k;
           least = std::min(least, sum);
         }
@@ -131,11 +137,24 @@ class Search {
       }
     }
     std::map<int, std::vector<Vec3>> out;
-    std::size_t at =
-        static_cast<std::size_t>(std::min_element(sums.back().begin(), sums.back().end()) - sums.back().begin());
-    for (int f = limb_.to; f >= limb_.from; --f) {
-      out[f] = found_.at(f)[at].turns;
-      at = from[static_cast<std::size_t>(f - limb_.from)][at];
+    auto at = static_cast<std::size_t>(std::min_element(sums.back().begin(), sums.back().end()) - sums.back().begin());
+    for (std::size_t i = frames_.size(); i-- > 0; at = from[i][at]) out[frames_[i]] = found_.at(frames_[i])[at].turns;
+    return out;
+  }
+
+  // Adds the frames between those that were searched.
+  std::map<int, std::vector<Vec3>> blended(std::map<int, std::vector<Vec3>> out) const {
+    for (std::size_t i = 1; i < frames_.size(); ++i) {
+      const int first = frames_[i - 1], last = frames_[i];
+      for (int f = first + 1; f < last; ++f) {
+        const double share = static_cast<double>(f - first) / (last - first);
+        std::vector<Vec3> turns = none(f);
+        for (const Index joint : limb_.joints) {
+          turns[joint] =
+              clip_.within_limits(f, joint, (1 - share) * out.at(first)[joint] + share * out.at(last)[joint], budget_);
+        }
+        out[f] = std::move(turns);
+      }
     }
     return out;
   }
@@ -144,7 +163,7 @@ class Search {
   void follow(const std::vector<Vec3>& way) {
     constexpr std::array<double, 6> kShares{0, .25, .5, .75, 1, 1.2};
     std::vector<TriedPose> poses;
-    for (int f = limb_.from; f <= limb_.to; ++f) {
+    for (const int f : frames_) {
       for (const double share : kShares) poses.push_back({f, scaled(f, way, share)});
     }
     const std::vector<double> left = evaluate_(poses);
@@ -153,8 +172,9 @@ class Search {
       double in, out;
     };
     std::vector<Bracket> brackets;
-    for (int f = limb_.from; f <= limb_.to; ++f) {
-      const auto first = static_cast<std::size_t>(f - limb_.from) * kShares.size();
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+      const int f = frames_[i];
+      const std::size_t first = i * kShares.size();
       const auto begin = left.begin() + static_cast<std::ptrdiff_t>(first);
       const auto best = static_cast<std::size_t>(std::min_element(begin, begin + kShares.size()) - begin);
       found_[f].push_back({std::move(poses[first + best].turns), left[first + best]});
@@ -202,6 +222,7 @@ class Search {
   double budget_;
   const Turns& start_;
   const EvaluatePoses& evaluate_;
+  std::vector<int> frames_;  // that are searched
   std::size_t ways_ = 0;
   std::map<int, std::vector<Found>> found_;  // by frame: the frame itself, then each candidate
 };

@@ -50,7 +50,8 @@ struct WorkingEvent {
 
   // In the clip as measured last.
   double depth_after_mm = 0;
-  double turn_degrees = 0;  // largest turn of a joint in its frames
+  double depths_before = 0, depths_after = 0;  // sums over its frames
+  double turn_degrees = 0;                     // largest turn of a joint in its frames
 
   int from() const { return static_cast<int>(found.from); }
   int to() const { return static_cast<int>(found.to); }

@@ -272,7 +272,8 @@ BodyParts body_parts_of(const OpenAsset& asset) {
   BodyParts out;
   for (std::size_t i = 0; i < asset->part_count(); ++i) {
     const sc_part part = asset->part(i);
-    out.parts.push_back({part.name, static_cast<Side>(part.side), part.bone, part.parent});
+    out.parts.push_back(
+        {part.name, static_cast<Side>(part.side), part.bone, part.parent, static_cast<std::uint8_t>(part.mobility)});
   }
   out.of_triangle.assign(asset->info().triangle_count, kNone);
   const Surface& surface = asset.surface();

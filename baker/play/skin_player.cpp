@@ -110,6 +110,24 @@ const std::vector<Penetration>& SkinPlayer::measure_quickly(const PartPairBits* 
   return find_next(nullptr, asked, is_next);
 }
 
+const std::vector<Penetration>& SkinPlayer::measure_strictly(const PartPairBits& pairs) {
+  if (faults_.empty()) {
+    for (std::uint32_t a = 0; a < asset_->part_count(); ++a) {
+      for (std::uint32_t b = 0; b <= a; ++b) {
+        faults_.emplace_back();  // without a direction to keep
+        faults_.back().part = a;
+        faults_.back().other = b;
+        faults_.back().kind = SC_CLASS_PENETRATION;
+      }
+    }
+  }
+  Query asked = query(false);
+  asked.part_pairs = pairs.data();
+  asked.previous = faults_.data();
+  asked.previous_count = faults_.size();
+  return find(nullptr, asked);
+}
+
 const std::vector<Penetration>& SkinPlayer::measure_as_games() {
   Query asked = query(true);
   asked.scope = SC_SCOPE_APART;

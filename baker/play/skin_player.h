@@ -88,6 +88,8 @@ class SkinPlayer {
   // The same by the quick form, as games do; of some pairs of body parts alone, or of all. `is_next`: the pose follows
   // the one that measure() or this measured last.
   const std::vector<Penetration>& measure_quickly(const PartPairBits* pairs = nullptr, bool is_next = false);
+  // Measures quickly what could be a fault in any clip: as if all parts had been in a fault a frame ago.
+  const std::vector<Penetration>& measure_strictly(const PartPairBits& pairs);
   // Measures two body parts alone, in full, without history. Empty if they do not intersect.
   std::optional<Penetration> measure_parts(std::uint32_t part_a, std::uint32_t part_b);
 
@@ -102,7 +104,7 @@ class SkinPlayer {
   BodyDef def_;
   Body body_;
   sc_pose pose_{};
-  std::vector<Penetration> found_, before_, before_with_;  // before: of the last of these, alone and with another
+  std::vector<Penetration> found_, faults_, before_, before_with_;  // before: of the last of these, alone and with another
 };
 
 }  // namespace spherechain::baker

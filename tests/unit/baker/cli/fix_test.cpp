@@ -93,6 +93,26 @@ TEST_CASE("fix: a fault in a clean clip is undone around it, and nothing else of
   CHECK(json_after["animations"][0]["channels"][1] == json_before["animations"][0]["channels"][1]);
 }
 
+TEST_CASE("fix: what a budget cannot cure takes nothing from the frames around, and more budget makes nothing worse") {
+  std::vector<double> degrees(150, 5);
+  for (int f = 70; f < 80; ++f) degrees[static_cast<std::size_t>(f)] = 40;
+  double before = HUGE_VAL;
+  for (const char* const budget : {"3", "6", "12", "30"}) {
+    const Fixed fixed = fix(degrees, std::string("--budget ") + budget);
+    double left = 0;
+    int cured = 0;
+    for (const double after : fixed.degrees) {
+      left += std::max(after, 0.0);
+      cured += after < 0.2 ? 1 : 0;
+    }
+    CHECK(left <= before);
+    CHECK(cured > 75);
+    before = left;
+    CHECK(fixed.report["clips"][0]["events"][0]["outcome"] == (cured == 150 ? "cleared" : "reduced"));
+  }
+  CHECK(before < 2);
+}
+
 TEST_CASE("fix: a loop stays one" * doctest::test_suite("long runs")) {
   std::vector<double> degrees(60, -10);
   for (int f = 52; f <= 58; ++f) degrees[static_cast<std::size_t>(f)] = 12;  // near its seam, on one side

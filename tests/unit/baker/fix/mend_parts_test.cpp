@@ -250,21 +250,28 @@ TEST_CASE("mend: it says why a limb stays where it is") {
   CHECK(find_obstacle(s.turned, limb, 25, 25, never).outcome == MendOutcome::kNoWayOut);
 }
 
-TEST_CASE("mend: a joint that shakes is seen and smoothed; one that swings is let be") {
+TEST_CASE("mend: a joint that shakes or jumps is seen and calmed; one that swings is let be") {
   Sticks s({"upper_arm.L", "forearm.L", "hand.L", "upper_arm.R", "hand.R"});
-  std::vector<std::size_t> span;
   for (int f = 0; f < kClipFrames; ++f) {
-    span.push_back(static_cast<std::size_t>(f));
     const std::size_t first = static_cast<std::size_t>(f) * s.turned.count();
     s.turns[first] = {0, 0, f % 2 == 0 ? 0.1 : 0.14};
     s.turns[first + 3] = {0, 0, 0.1 + 0.05 * std::sin(f / 8.0)};
   }
-  const std::set<Index> shaking = shaking_joints(s.turned, span, s.turns, kStickHeight);
+  const MarkedTurns shaking = shaking_turns(s.turned, s.turns, kStickHeight);
   CHECK(shaking.count(0) == 1);
   CHECK(shaking.count(3) == 0);
-  smooth(s.turned, 0, span, 2, false, s.turns);
-  CHECK(shaking_joints(s.turned, span, s.turns, kStickHeight).empty());
-  CHECK(s.turns[30 * s.turned.count()].z() == doctest::Approx(0.12).epsilon(0.01));
+  calm_turns(s.turned, kStickHeight, false, s.turns);
+  CHECK(shaking_turns(s.turned, s.turns, kStickHeight).empty());
+  CHECK(s.turns[30 * s.turned.count()].z() == doctest::Approx(0.12).epsilon(0.05));
+  // An arm that is turned for ten frames only: it then turns longer, and its hand moves by no step.
+  for (int f = 0; f < kClipFrames; ++f) {
+    s.turns[static_cast<std::size_t>(f) * s.turned.count()] = {0, 0, f >= 25 && f < 35 ? 0.3 : 0};
+  }
+  CHECK(shaking_turns(s.turned, s.turns, kStickHeight).at(0)[25] == 1);
+  calm_turns(s.turned, kStickHeight, false, s.turns);
+  CHECK(shaking_turns(s.turned, s.turns, kStickHeight).empty());
+  CHECK(s.turns[30 * s.turned.count()].z() > 0.2);
+  CHECK(s.turns[20 * s.turned.count()].z() > 0.05);
 }
 
 TEST_CASE("mend: what lies together in time is one span, over a loop's seam too") {
