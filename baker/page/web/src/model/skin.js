@@ -15,7 +15,7 @@ export class Skin {
     this.motion = motion;
     this.frame = -1;
     const { positions, triangles, partOf, sphereOf, layerOf, influences, joints, weights } = mesh;
-    this.isLaidOver = false;
+    this.apart = [0, 0, 0]; // from before to after a change
     const isBefore = (triangle) => mesh.changed !== null && triangle < mesh.changed.triangle;
     const before = []; // of each vertex
     const ownPath = new Uint8Array(positions.length / 3).fill(motion.vertices ? 1 : 0);
@@ -69,17 +69,17 @@ export class Skin {
     this.morphed = motion.morphs.length > 0 ? Float32Array.from(positions) : positions;
   }
 
-  // Lays before and after a change over each other, in the middle between them.
-  layOver(isLaidOver) {
-    if (this.isLaidOver !== isLaidOver) this.frame = -1;
-    this.isLaidOver = isLaidOver;
+  // Moves before and after a change apart by `step`, half of it each. They lie over each other where it is 0.
+  moveApart(step) {
+    if (step.every((x, k) => x === this.apart[k])) return;
+    this.apart = step;
+    this.frame = -1;
   }
 
   // How far that moves a triangle.
   shiftOf(t) {
-    if (!this.isLaidOver) return [0, 0, 0];
-    const { triangle, step } = this.mesh.changed;
-    return step.map((x) => (t < triangle ? x : -x) / 2);
+    if (!this.mesh.changed) return [0, 0, 0];
+    return this.apart.map((x) => (t < this.mesh.changed.triangle ? -x : x) / 2);
   }
 
   shift() {
@@ -104,7 +104,7 @@ export class Skin {
       if (blends) this.blend(bones.subarray(frame * 12 * boneCount));
       else this.take(this.morphed);
     }
-    if (this.isLaidOver) this.shift();
+    if (this.apart.some((x) => x !== 0)) this.shift();
     this.computeNormals();
     return true;
   }
