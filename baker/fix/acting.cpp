@@ -12,8 +12,8 @@ namespace spherechain::baker {
 namespace {
 
 constexpr std::size_t kSamples = 64;  // vertices of an end
-constexpr double kLeastMove = 5e-5;   // heights: a smaller move is none
-constexpr double kLeastTurn = 0.05;   // degrees
+constexpr double kLeastMove = 3e-4;   // heights: a smaller move is none
+constexpr double kLeastTurn = 0.1;    // degrees
 
 // Thresholds of the verdict: docs/fixing-clips.md says why.
 constexpr double kHumanHeight = 1700;                  // mm
@@ -56,6 +56,14 @@ std::vector<Index> vertices_of(std::uint32_t part, const BodyParts& parts, const
   return out;
 }
 
+bool is_left_alone(const MendedEvent& event) {
+  return event.outcome == MendOutcome::kFold || event.outcome == MendOutcome::kAccepted;
+}
+
+bool share(const std::vector<Index>& a, const std::vector<Index>& b) {
+  return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
+}
+
 using Named = std::vector<std::pair<std::string, double>>;
 
 void largest_first(Named& list, double least) {
@@ -70,7 +78,7 @@ const char* verdict_name(ActingVerdict verdict) {
   return kNames[static_cast<std::size_t>(verdict)];
 }
 
-ActingMeasure::ActingMeasure(const ClipFacts& facts, const Roles& roles) : facts_(facts), first_{0} {
+ActingMeasure::ActingMeasure(const ClipFacts& facts, const Roles& roles) : facts_(facts), roles_(roles), first_{0} {
   const Character& character = facts.animated.character();
   const BodyParts parts = body_parts_of(facts.animated.asset());
   const std::vector<VertexWeights>& weights = facts.animated.weights();
@@ -98,17 +106,17 @@ std::vector<Vec3> ActingMeasure::places(int frame, const std::vector<Vec3>& turn
   return out;
 }
 
-Acting ActingMeasure::measure(const Turns& turns, int from, int to) {
+Acting ActingMeasure::measure(const Turns& turns, Frames frames) {
   const std::size_t count = facts_.clip.count();
   Acting out;
-  out.from = from;
-  out.to = to;
+  out.from = frames.from;
+  out.to = frames.to;
   for (const std::string& end : ends_) out.moves_mm.emplace_back(end, 0);
   for (const TurningJoint& joint : facts_.clip.joints()) {
     out.turns.emplace_back(facts_.clip.rig().nodes[joint.node].name, 0);
   }
   std::vector<Vec3> last;
-  for (int f = from; f <= to; ++f) {
+  for (int f = std::max(0, frames.from - 1); f <= frames.to; ++f) {
     const std::vector<Vec3> turned = facts_.clip.turns_at(f, turns);
     std::vector<Vec3> moved(ends_.size() + count, Vec3::Zero());
     if (std::any_of(turned.begin(), turned.end(), [](const Vec3& turn) { return !turn.isZero(0); })) {
@@ -117,10 +125,10 @@ Acting ActingMeasure::measure(const Turns& turns, int from, int to) {
       moved = places(f, turned);
       for (std::size_t i = 0; i < moved.size(); ++i) moved[i] -= animated[i];
     }
-    for (std::size_t e = 0; e < ends_.size(); ++e) {
+    for (std::size_t e = 0; e < ends_.size() && f >= frames.from; ++e) {
       out.moves_mm[e].second = std::max(out.moves_mm[e].second, facts_.mm * moved[e].norm());
     }
-    for (std::size_t j = 0; j < count; ++j) {
+    for (std::size_t j = 0; j < count && f >= frames.from; ++j) {
       out.turns[j].second = std::max(out.turns[j].second, to_degrees(turned[j].norm()));
     }
     for (std::size_t i = 0; i < last.size(); ++i) {
@@ -135,19 +143,33 @@ Acting ActingMeasure::measure(const Turns& turns, int from, int to) {
   return out;
 }
 
-Acting ActingMeasure::measure(const MendedEvent& event, const std::vector<Index>& joints, const Turns& turns) {
-  const int pad = static_cast<int>(std::ceil(kWindowPad * facts_.clip.fps()));
-  const int from = std::max(0, static_cast<int>(event.before.from) - pad);
-  const int to = std::min(facts_.clip.frames() - 1, static_cast<int>(event.before.to) + pad);
-  const std::size_t count = facts_.clip.count();
-  Turns own(turns.size(), Vec3::Zero());
-  for (int f = from; f <= to; ++f) {
-    for (const Index joint : joints) {
-      const std::size_t i = static_cast<std::size_t>(f) * count + joint;
-      own[i] = turns[i];
+Acting ActingMeasure::of_event(const std::vector<MendedEvent>& events, std::size_t event, const Turns& turns) {
+  const int last = facts_.clip.frames() - 1, pad = static_cast<int>(std::ceil(kWindowPad * facts_.clip.fps()));
+  const int from = static_cast<int>(events[event].before.from), to = static_cast<int>(events[event].before.to);
+  const Frames window{std::max(0, from - pad), std::min(last, to + pad)};
+  Acting out;
+  if (!is_left_alone(events[event])) {
+    const std::vector<Index> joints = joints_of_event(events[event], facts_, roles_);
+    Frames own = window;
+    for (std::size_t e = 0; e < events.size(); ++e) {
+      if (e == event || is_left_alone(events[e]) || !share(joints, joints_of_event(events[e], facts_, roles_)))
+        continue;
+      const int its_from = static_cast<int>(events[e].before.from), its_to = static_cast<int>(events[e].before.to);
+      if (its_to < from) own.from = std::max(own.from, (its_to + from + 1) / 2);
+      if (its_from > to) own.to = std::min(own.to, (its_from + to) / 2);
     }
+    Turns alone(turns.size(), Vec3::Zero());
+    for (int f = std::max(0, own.from - 1); f <= own.to; ++f) {
+      for (const Index joint : joints) {
+        const std::size_t i = static_cast<std::size_t>(f) * facts_.clip.count() + joint;
+        alone[i] = turns[i];
+      }
+    }
+    out = measure(alone, own);
   }
-  return measure(own, from, to);
+  out.from = window.from;
+  out.to = window.to;
+  return out;
 }
 
 std::vector<Index> joints_of_event(const MendedEvent& event, const ClipFacts& facts, const Roles& roles) {

@@ -31,19 +31,24 @@ struct Acting {
 // in their place.
 class ActingMeasure {
  public:
-  // `facts` must outlive it.
+  // `facts` and `roles` must outlive it.
   ActingMeasure(const ClipFacts& facts, const Roles& roles);
 
-  // Measures the frames `from` to `to`.
-  Acting measure(const Turns& turns, int from, int to);
-  // Measures an event alone: its frames and kWindowPad seconds around them, with the turns of `joints` and no others.
-  Acting measure(const MendedEvent& event, const std::vector<Index>& joints, const Turns& turns);
+  // Measures the whole clip.
+  Acting of_clip(const Turns& turns) { return measure(turns, {0, facts_.clip.frames() - 1}); }
+  // Measures an event: its frames and kWindowPad seconds around them, up to half-way to the next event of its joints.
+  Acting of_event(const std::vector<MendedEvent>& events, std::size_t event, const Turns& turns);
 
  private:
+  struct Frames {
+    int from, to;
+  };
+  Acting measure(const Turns& turns, Frames frames);
   // The centre of each end's skin; then the place of each joint.
   std::vector<Vec3> places(int frame, const std::vector<Vec3>& turns) const;
 
   const ClipFacts& facts_;
+  const Roles& roles_;
   std::vector<std::string> ends_;
   std::vector<std::size_t> first_;  // of the samples of each end, and the number of all
   std::vector<Vec3> rest_;          // samples of the skin

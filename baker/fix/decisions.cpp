@@ -115,7 +115,7 @@ class Refuser {
   }
 
  private:
-  double step_of(const Turns& turns) { return measure_.measure(turns, 0, facts_.clip.frames() - 1).step_percent; }
+  double step_of(const Turns& turns) { return measure_.of_clip(turns).step_percent; }
 
   bool needs(std::size_t event, Index joint) const {
     return std::binary_search(joints_[event].begin(), joints_[event].end(), joint);

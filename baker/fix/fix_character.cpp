@@ -232,9 +232,9 @@ class Fixer {
 
   void measure_acting(const ClipFacts& facts, MendedClip& mended) const {
     ActingMeasure measure(facts, roles_);
-    mended.acting = measure.measure(mended.mend.turns, 0, facts.clip.frames() - 1);
-    for (const MendedEvent& event : mended.mend.events) {
-      mended.event_acting.push_back(measure.measure(event, joints_of_event(event, facts, roles_), mended.mend.turns));
+    mended.acting = measure.of_clip(mended.mend.turns);
+    for (std::size_t e = 0; e < mended.mend.events.size(); ++e) {
+      mended.event_acting.push_back(measure.of_event(mended.mend.events, e, mended.mend.turns));
     }
   }
 

@@ -178,7 +178,7 @@ export function start(model, listed = []) {
     stage?.flyToSpheres(model.sphere(frame, a, radius), model.sphere(frame, b, radius));
   };
   // `camera`: from where it is seen, where that is known.
-  const flyToContact = (key, camera = null, room = undefined) => {
+  const flyToContact = (key, camera = null, room = 1) => {
     const contact = model.contacts.now(store.state.frame).find((other) => other.key === key);
     const side = model.change ? (contact?.parts[0] < model.change.part ? -1 : 1) : 0;
     if (contact) stage?.flyToContact(skin.ballOf(contact.triangles), camera, side, room);

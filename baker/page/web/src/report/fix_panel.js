@@ -70,7 +70,7 @@ export function fillFixPanel(panel, { model, store, flyToContact }) {
     const loop = { first: place(from), count: place(to) - place(from) + 1 };
     const { showing } = store.state;
     store.set({ frame: place(event.deepest), playing: false, contact: key, loop, showing: showing === 'beside' ? 'ghost' : showing });
-    flyToContact(key, null, 1.1);
+    flyToContact(key, null, 1.7);
     store.set({ playing: !matchMedia('(prefers-reduced-motion: reduce)').matches });
     draw();
   };

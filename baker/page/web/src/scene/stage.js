@@ -250,13 +250,14 @@ export function createStage(canvas, model, store, { skinLayer, ghostLayer, spher
     },
 
     // Looks at a ball of source units from where the outside of the chosen contact's triangles is seen best, or as `known` says.
-    // `side`: it is left (-1) or right (1) of where before and after a change meet. `room`: the least distance.
-    flyToContact(ball, known, side = 0, room = known ? 0.74 : 0.62) {
+    // `side`: it is left (-1) or right (1) of where before and after a change meet. `room`: how many times as far it looks from.
+    flyToContact(ball, known, side = 0, room = 1) {
       framed = null;
       const center = new THREE.Vector3(...(known?.target ?? ball)).applyMatrix4(toWorld());
-      const distance = Math.max((1.5 * ball[3]) / model.height / TAN, room * unit);
+      const near = Math.max((1.5 * ball[3]) / model.height / TAN, (known ? 0.74 : 0.62) * unit);
+      const distance = room * near;
       const back = camera.position.clone().sub(controls.target).normalize();
-      const best = known ? new THREE.Vector3(...known.back).transformDirection(toWorld()) : findView(toWorld(), center, distance, back, inSphere);
+      const best = known ? new THREE.Vector3(...known.back).transformDirection(toWorld()) : findView(toWorld(), center, near, back, inSphere);
       if (best) center.addScaledVector(rightOf(back), -side * halfApart()).addScaledVector(rightOf(best), side * halfApart());
       go(center, best ? center.clone().addScaledVector(best, distance) : outside(center, back, distance));
     },
