@@ -15,15 +15,15 @@ constexpr std::size_t kSamples = 64;  // vertices of an end
 constexpr double kLeastMove = 3e-4;   // heights: a smaller move is none
 constexpr double kLeastTurn = 0.1;    // degrees
 
-// Thresholds of the verdict: docs/fixing-clips.md says why.
+// Thresholds of the verdict: half of a hand's width; a hand that lay on the belly hangs beside it; a fast twitch.
 constexpr double kHumanHeight = 1700;                  // mm
-constexpr double kSmallMove = 30, kVisibleMove = 100;  // mm on a body of that height
+constexpr double kSmallMove = 40, kVisibleMove = 100;  // mm on a body of that height
 constexpr double kSmallTurn = 10, kVisibleTurn = 30;   // degrees
-constexpr double kSmallStep = 0.5, kVisibleStep = 2;   // % of the height a frame
+constexpr double kSmallStep = 1;                       // % of the height a frame
 
 ActingVerdict verdict_on(double move, double turn, double step) {
   if (move == 0 && turn == 0) return ActingVerdict::kUnchanged;
-  if (move > kVisibleMove || turn > kVisibleTurn || step > kVisibleStep) return ActingVerdict::kChangesPose;
+  if (move > kVisibleMove || turn > kVisibleTurn) return ActingVerdict::kChangesPose;
   if (move > kSmallMove || turn > kSmallTurn || step > kSmallStep) return ActingVerdict::kVisible;
   return ActingVerdict::kSmall;
 }

@@ -20,12 +20,12 @@ using nlohmann::json;
 
 namespace {
 
-constexpr int kFrames = 150;
+constexpr int kSwingFrames = 150;
 
 // -10 degrees, which is free of the wall, and into it around each of these frames.
 std::vector<double> swings(const std::vector<int>& frames) {
-  std::vector<double> out(kFrames, -10);
-  for (int f = 0; f < kFrames; ++f) {
+  std::vector<double> out(kSwingFrames, -10);
+  for (int f = 0; f < kSwingFrames; ++f) {
     for (const int at : frames)
       out[static_cast<std::size_t>(f)] = std::max(out[static_cast<std::size_t>(f)], 6.0 - 4 * std::abs(f - at));
   }
@@ -61,7 +61,7 @@ struct Fixer {
   static std::vector<Vec3> paddle(const std::filesystem::path& glb) {
     const Character character = import_character(glb);
     std::vector<Vec3> out;
-    for (int f = 0; f < kFrames; ++f) {
+    for (int f = 0; f < kSwingFrames; ++f) {
       out.emplace_back(1000 * (world_at(character.rig, character.rig.clips[0], f / 30.0)[2] * Vec3(0, -0.4, 0)));
     }
     return out;
@@ -75,7 +75,7 @@ TEST_CASE("fix: it says how far the pose moves, as the two files have it") {
   CHECK(fixer.run().code == 0);
   const std::vector<Vec3> before = Fixer::paddle(fixer.file), after = Fixer::paddle(fixer.out);
   double most = 0, step = 0;
-  for (std::size_t f = 0; f < kFrames; ++f) {
+  for (std::size_t f = 0; f < kSwingFrames; ++f) {
     most = std::max(most, (after[f] - before[f]).norm());
     if (f > 0) step = std::max(step, (after[f] - before[f] - after[f - 1] + before[f - 1]).norm());
   }
@@ -103,7 +103,7 @@ TEST_CASE("fix: what is refused stays as animated, and nothing else changes") {
   CHECK_MESSAGE(one.code == 0, one.out);
   CHECK(one.error == "");
   const std::vector<Vec3> decided = Fixer::paddle(fixer.out);
-  for (std::size_t f = 0; f < kFrames; ++f) CHECK(decided[f] == (f < 75 ? animated : cured)[f]);
+  for (std::size_t f = 0; f < kSwingFrames; ++f) CHECK(decided[f] == (f < 75 ? animated : cured)[f]);
   CHECK(fixer.report["events"][0]["outcome"] == "refused");
   CHECK(fixer.report["events"][0]["depth_mm_after"] == fixer.report["events"][0]["depth_mm_before"]);
   CHECK(fixer.report["events"][1]["outcome"] == "cleared");
@@ -125,7 +125,7 @@ TEST_CASE("fix: an accepted event keeps its pose beside a refused one, and the j
   for (int f = from; f <= to; ++f)
     CHECK((decided[static_cast<std::size_t>(f)] - cured[static_cast<std::size_t>(f)]).norm() < 1e-3);
   CHECK((decided[58] - animated[58]).norm() < 0.5 * (cured[58] - animated[58]).norm());
-  for (std::size_t f = 1; f < kFrames; ++f) {
+  for (std::size_t f = 1; f < kSwingFrames; ++f) {
     CHECK((decided[f] - animated[f] - decided[f - 1] + animated[f - 1]).norm() < 25);
   }
 }

@@ -186,11 +186,12 @@ export function readModel(data) {
       const isOther = (part) => part < data.change.part !== (showing === 'before');
       return new Set([...hiddenParts, ...data.parts.keys()].filter((part) => hiddenParts.has(part) || isOther(part)));
     },
-    // Contacts that are painted in a frame: before and after a change faults alone, and the one that was gone to.
+    // Contacts that are painted in a frame: before and after a change faults alone, or the one that was gone to and faults that
+    // are left.
     painted({ frame, contact, showing, hiddenParts }) {
       const hidden = this.hiddenParts({ hiddenParts, showing });
-      const isShown = (other) => !other.parts.every((part) => hidden.has(part)) && (!data.change || isFault(other) || other.key === contact);
-      return this.contacts.now(frame).filter(isShown);
+      const isAsked = ({ key, kind, parts }) => key === contact || (isFault({ kind }) && (contact === null || parts[0] >= data.change.part));
+      return this.contacts.now(frame).filter((other) => !other.parts.every((part) => hidden.has(part)) && (!data.change || isAsked(other)));
     },
     clipAt: (frame) => Math.max(clips.findLastIndex(({ first }) => first <= frame), 0),
     time: (frame) => times[frame] ?? frame / (frames?.fps || 30),

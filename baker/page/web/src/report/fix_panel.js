@@ -83,6 +83,10 @@ export function fillFixPanel(panel, { model, store, flyToContact }) {
     writeStore(clip.name, decisions());
     draw();
   };
+  const refuseAll = (these) => {
+    for (const event of these) refused.add(event);
+    decide(true);
+  };
   const decisions = () => all.filter(isOpen).map((event) => decisionOf(clip.name, event, refused.has(event)));
   const save = () => {
     const others = Object.entries(readStore()).flatMap(([name, list]) => (name === clip.name ? [] : list));
@@ -110,7 +114,12 @@ export function fillFixPanel(panel, { model, store, flyToContact }) {
           button('Refuse', 'Leave it as animated (R)', refused.has(event), () => decide(true)),
         ),
       holders.length > 0 &&
-        h('p', { class: 'when warning' }, `Frames that it shares with ${holders.slice(0, 3).map(nameOf).join('; ')}${holders.length > 3 ? ` and ${holders.length - 3} more` : ''} stay turned. Refuse ${holders.length > 1 ? 'these' : 'that'}, too, to have it all as animated.`),
+        h(
+          'p',
+          { class: 'held' },
+          `Where it meets ${holders.slice(0, 3).map(nameOf).join('; ')}${holders.length > 3 ? ` and ${holders.length - 3} more` : ''}, the limb stays as it is there. `,
+          h('button', { type: 'button', class: 'link', onclick: () => refuseAll(holders) }, `Refuse ${holders.length > 1 ? 'them' : 'it'}, too`),
+        ),
     );
   };
   const item = (event) =>
@@ -134,7 +143,8 @@ export function fillFixPanel(panel, { model, store, flyToContact }) {
   panel.append(bar, list, note, commandBlock('spherechain', 'fix', 'INPUT', '--decisions', 'decisions.json', '-o', 'OUTPUT'));
 
   function draw() {
-    const counts = Object.entries(VERDICTS).map(([key, text]) => [events.filter(({ acting }) => acting.verdict === key && key !== 'unchanged').length, text]);
+    const verdicts = Object.entries({ ...VERDICTS, changes_pose: 'change the pose' }).filter(([key]) => key !== 'unchanged');
+    const counts = verdicts.map(([key, text]) => [events.filter(({ acting }) => acting.verdict === key).length, text]);
     summary.textContent = `${plural(events.length, 'event')}: ${[...counts, [refused.size, 'refused']].filter(([count]) => count > 0).map(([count, text]) => `${count} ${text}`).join(', ')}`;
     list.replaceChildren(...events.map(item));
     list.querySelector('.chosen')?.scrollIntoView({ block: 'nearest' });
