@@ -86,7 +86,7 @@ TEST_CASE("fix: it says how far the pose moves, as the two files have it") {
   REQUIRE(fixer.report["events"].size() == 2);
   for (const json& event : fixer.report["events"]) {
     CHECK(event["acting"]["moves_mm"]["paddle"].get<double>() == doctest::Approx(most).epsilon(0.02));
-    CHECK(event["acting"]["verdict"] == "visible");
+    CHECK(event["acting"]["verdict"] == "small");
   }
   // The height of this character is that of its wall and block: 2 m or little more.
   CHECK(acting["step_percent"].get<double>() == doctest::Approx(step / 20).epsilon(0.2));
@@ -99,7 +99,7 @@ TEST_CASE("fix: what is refused stays as animated, and nothing else changes") {
   const json first = fixer.decision(0, "refuse"), second = fixer.decision(1, "refuse");
   const std::vector<Vec3> animated = Fixer::paddle(fixer.file), cured = Fixer::paddle(fixer.out);
 
-  const tool::Run one = fixer.decide({first});
+  const tool::Run one = fixer.decide(json::array({first}));
   CHECK_MESSAGE(one.code == 0, one.out);
   CHECK(one.error == "");
   const std::vector<Vec3> decided = Fixer::paddle(fixer.out);
@@ -109,7 +109,7 @@ TEST_CASE("fix: what is refused stays as animated, and nothing else changes") {
   CHECK(fixer.report["events"][1]["outcome"] == "cleared");
   CHECK(fixer.report["events"][0]["held_by"].empty());
 
-  CHECK(fixer.decide({first, second}).code == 0);
+  CHECK(fixer.decide(json::array({first, second})).code == 0);
   CHECK(tool::contents(fixer.out) == tool::contents(fixer.file));
 }
 
@@ -119,7 +119,7 @@ TEST_CASE("fix: an accepted event keeps its pose beside a refused one, and the j
   REQUIRE(fixer.report["events"].size() == 2);
   const std::vector<Vec3> animated = Fixer::paddle(fixer.file), cured = Fixer::paddle(fixer.out);
   const int from = fixer.report["events"][1]["from"], to = fixer.report["events"][1]["to"];
-  const tool::Run run = fixer.decide({fixer.decision(0, "refuse"), fixer.decision(1, "accept")});
+  const tool::Run run = fixer.decide(json::array({fixer.decision(0, "refuse"), fixer.decision(1, "accept")}));
   CHECK(run.code == 0);
   const std::vector<Vec3> decided = Fixer::paddle(fixer.out);
   for (int f = from; f <= to; ++f)
@@ -133,7 +133,7 @@ TEST_CASE("fix: an accepted event keeps its pose beside a refused one, and the j
 TEST_CASE("fix: a decision about no event is named, and a file that holds no decisions is refused") {
   Fixer fixer(swings({40}));
   json elsewhere{{"clip", "swing"}, {"parts", {"wall", "paddle"}}, {"from", 7}, {"to", 9}, {"decision", "refuse"}};
-  const tool::Run run = fixer.decide({elsewhere});
+  const tool::Run run = fixer.decide(json::array({elsewhere}));
   CHECK(run.code == 0);
   CHECK(run.error.find("decisions.json: is about no event of this run: 'swing': wall, paddle, frames 7-9") !=
         std::string::npos);
@@ -145,12 +145,12 @@ TEST_CASE("fix: a decision about no event is named, and a file that holds no dec
   check("{", {"decisions.json", "line 1 is not JSON"});
   check("[]", {"decisions.json", "spherechain_decisions"});
   elsewhere["from"] = 1.5;
-  check(json{{"spherechain_decisions", {elsewhere}}}.dump(), {"entry 1", "'from'", "a frame's number"});
+  check(json{{"spherechain_decisions", json::array({elsewhere})}}.dump(), {"entry 1", "'from'", "a frame's number"});
   elsewhere["from"] = 7;
   json other = elsewhere;
   other["decision"] = "accept";
-  check(json{{"spherechain_decisions", {elsewhere, other}}}.dump(), {"accepts and refuses one event"});
+  check(json{{"spherechain_decisions", json::array({elsewhere, other})}}.dump(), {"accepts and refuses one event"});
   other["decision"] = "perhaps";
-  check(json{{"spherechain_decisions", {other}}}.dump(), {"entry 1", "'decision'", "accept or refuse"});
+  check(json{{"spherechain_decisions", json::array({other})}}.dump(), {"entry 1", "'decision'", "accept or refuse"});
   tool::check_error(fixer.run("--decisions " + (fixer.folder.path / "none.json").string()), 3, {"none.json"});
 }

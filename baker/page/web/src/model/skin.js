@@ -33,7 +33,8 @@ export class Skin {
     for (let corner = 0; corner < triangles.length; ++corner) {
       const v = triangles[corner];
       if (placeOf[v] < 0) {
-        placeOf[v] = sameAs(places, `${positions[3 * v]},${positions[3 * v + 1]},${positions[3 * v + 2]}`);
+        const who = isBefore(Math.floor(corner / 3)) ? 'before ' : '';
+        placeOf[v] = sameAs(places, `${who}${positions[3 * v]},${positions[3 * v + 1]},${positions[3 * v + 2]}`);
         const from = influences * v;
         const to = from + influences;
         const skin = influences > 0 ? `${joints.subarray(from, to)};${weights.subarray(from, to)}` : '';
@@ -63,10 +64,26 @@ export class Skin {
       part: Math.floor(key / 65536) % 256,
       material: look?.materials[key % 65536] ?? null,
     }));
+    this.changedTo = mesh.changed && this.findChanged();
     this.positions = new Float32Array(3 * source.length);
     this.normals = new Float32Array(3 * source.length);
     this.placeNormals = new Float32Array(3 * places.size);
     this.morphed = motion.morphs.length > 0 ? Float32Array.from(positions) : positions;
+  }
+
+  // Of each vertex before a change the same one after it; -1: it is one after.
+  findChanged() {
+    const count = this.mesh.positions.length / 6;
+    const after = new Map();
+    this.source.forEach((v, r) => v >= count && after.set(v - count, r));
+    return Int32Array.from(this.source, (v) => (v < count ? (after.get(v) ?? -1) : -1));
+  }
+
+  // How far a change has moved the vertex whose place begins at `i`; 0 where it is one after.
+  moved(i) {
+    const p = this.positions;
+    const j = 3 * this.changedTo[i / 3];
+    return j < 0 ? 0 : Math.hypot(p[i] - p[j], p[i + 1] - p[j + 1], p[i + 2] - p[j + 2]);
   }
 
   // Moves before and after a change apart by `step`, half of it each. They lie over each other where it is 0.

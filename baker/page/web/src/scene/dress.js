@@ -13,11 +13,13 @@ function dressSkin(model, state, skinLayer) {
   const plain = state.regions || state.patches || state.layers || !state.look;
   skinLayer.uniforms.pictured.value = plain ? 0 : 1;
   const hidden = model.hiddenParts(state);
+  const isGhost = model.change && state.showing === 'ghost';
+  if (model.change) skinLayer.show((i) => (isGhost ? skinLayer.skin.moved(i) / (MOVED * model.height) : 0));
   skinLayer.skin.zones.forEach(({ layer, sphere, part, material, isBefore }, zone) => {
     const region = model.spheres[sphere]?.region ?? -1;
     const base = state.layers ? LAYERS[layer] : state.regions || state.patches ? regionColour(region) : (!plain && material?.colour) || CLAY;
     if (hidden.has(part) || (state.masked && layer === HIDDEN_LAYER)) skinLayer.setLook(zone, base, looks.HIDDEN);
-    else if (state.showing === 'ghost' && isBefore) skinLayer.setLook(zone, GHOST, looks.GHOST);
+    else if (isGhost && isBefore) skinLayer.setLook(zone, GHOST, looks.GHOST);
     else if (state.method && sphere === state.pointed) skinLayer.setLook(zone, POINTED, looks.POINTED);
     else skinLayer.setLook(zone, state.patches ? tone(base, sphere) : base, looks.PLAIN);
   });
