@@ -12,8 +12,8 @@ namespace spherechain::baker {
 namespace {
 
 constexpr std::size_t kSamples = 64;  // vertices of an end
-constexpr double kLeastMove = 3e-4;   // heights: a smaller move is none
-constexpr double kLeastTurn = 0.1;    // degrees
+constexpr double kMoveMin = 3e-4;     // heights: a smaller move is none
+constexpr double kTurnMin = 0.1;      // degrees
 
 // Thresholds of the verdict: half of a hand's width; a hand that lay on the belly hangs beside it; a fast twitch.
 constexpr double kHumanHeight = 1700;                  // mm
@@ -136,8 +136,8 @@ Acting ActingMeasure::measure(const Turns& turns, Frames frames) {
     }
     last = std::move(moved);
   }
-  largest_first(out.moves_mm, kLeastMove * facts_.height * facts_.mm);
-  largest_first(out.turns, kLeastTurn);
+  largest_first(out.moves_mm, kMoveMin * facts_.height * facts_.mm);
+  largest_first(out.turns, kTurnMin);
   out.verdict = verdict_on(out.move_mm() * kHumanHeight / (facts_.mm * facts_.height),
                            out.turns.empty() ? 0 : out.turns.front().second, out.step_percent);
   return out;

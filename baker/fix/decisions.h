@@ -9,7 +9,7 @@
 
 namespace spherechain::baker {
 
-// What an animator says about an event of a fix. The clip, the parts and the frames name the event.
+// A decision of an animator about an event of a fix. The clip, the parts and the frames name the event.
 struct Decision {
   std::string clip;
   std::array<std::string, 2> parts;

@@ -102,6 +102,13 @@ function drawBars(canvas, model, state) {
   drawClips(context, { model, x, base, inRange });
 }
 
+// "2 faults → 0": before and after a change.
+function changeText(contacts, { part }) {
+  const before = contacts.filter((contact) => isFault(contact) && contact.parts[0] < part).length;
+  const after = contacts.filter((contact) => isFault(contact) && contact.parts[0] >= part).length;
+  return before + after === 0 ? 'no fault' : `${plural(before, 'fault')} → ${after}`;
+}
+
 export function fillTimeline(panel, store, model) {
   const last = model.frameCount - 1;
   const go = (frame) => store.set({ frame: Math.min(Math.max(frame, 0), last), playing: false });
@@ -128,9 +135,8 @@ export function fillTimeline(panel, store, model) {
   store.watch(['frame', 'pose'], ({ frame }) => {
     const clip = model.clips[model.clipAt(frame)];
     const contacts = model.contacts.now(frame);
-    const touching = contacts.length;
     const number = model.number(frame);
-    const text = model.mask ? '' : touching > 0 ? plural(touching, 'contact') : 'no contact';
+    const text = model.mask ? '' : model.change ? changeText(contacts, model.change) : contacts.length > 0 ? plural(contacts.length, 'contact') : 'no contact';
     input.setAttribute('aria-valuetext', [clip.name, `frame ${number}`, text].filter(Boolean).join(', '));
     readout.replaceChildren(
       last === 0 ? h('b', {}, 'One frame') : h('span', {}, 'frame ', h('b', {}, `${number}`), ` / ${clip.own_count - 1}`),
