@@ -29,13 +29,11 @@ ActingVerdict verdict_on(double move, double turn, double step) {
 }
 
 // The parts that an animator looks at: head, hands and feet; without any of them, each part on which no other hangs.
-std::vector<std::uint32_t> ends_of(const std::vector<BodyPart>& parts, const SourceRig& rig, const Roles& roles) {
-  static const std::set<std::string> kEnds{"head", "left_wrist", "right_wrist", "left_ankle", "right_ankle"};
+std::vector<std::uint32_t> ends_of(const std::vector<BodyPart>& parts) {
   std::vector<std::uint32_t> out, tips;
   for (std::uint32_t p = 0; p < parts.size(); ++p) {
-    if (parts[p].bone < 0) continue;
-    const Index node = rig.bones[static_cast<std::size_t>(parts[p].bone)].node;
-    if (node < roles.of_node.size() && kEnds.contains(roles.of_node[node].role)) out.push_back(p);
+    const std::string& name = parts[p].name;  // "left hand", "right forefoot"
+    if (name.ends_with("head") || name.ends_with("hand") || name.ends_with("foot")) out.push_back(p);
     const auto hangs = [&](const BodyPart& other) { return other.parent == static_cast<int>(p); };
     if (std::none_of(parts.begin(), parts.end(), hangs)) tips.push_back(p);
   }
@@ -82,7 +80,7 @@ ActingMeasure::ActingMeasure(const ClipFacts& facts, const Roles& roles) : facts
   const Character& character = facts.animated.character();
   const BodyParts parts = body_parts_of(facts.animated.asset());
   const std::vector<VertexWeights>& weights = facts.animated.weights();
-  for (const std::uint32_t part : ends_of(parts.parts, character.rig, roles)) {
+  for (const std::uint32_t part : ends_of(parts.parts)) {
     for (const Index vertex : vertices_of(part, parts, character.source_triangles)) {
       rest_.push_back(character.source_positions[vertex]);
       weights_.push_back(weights[vertex]);

@@ -71,7 +71,7 @@ export class Skin {
     this.morphed = motion.morphs.length > 0 ? Float32Array.from(positions) : positions;
   }
 
-  // Of each vertex before a change the same one after it; -1: it is one after.
+  // For each vertex before a change: the same vertex after it. -1: the vertex belongs to the state after.
   findChanged() {
     const count = this.mesh.positions.length / 6;
     const after = new Map();
