@@ -92,6 +92,18 @@ TEST_CASE("fix: it says how far the pose moves, as the two files have it") {
   CHECK(acting["step_percent"].get<double>() == doctest::Approx(step / 20).epsilon(0.2));
 }
 
+TEST_CASE("fix: docs/json.md names every key of fix.json") {
+  Fixer fixer(swings({40}));
+  CHECK(fixer.run().code == 0);
+  const std::string page = tool::contents(SPHERECHAIN_SAMPLES "/../docs/json.md");
+  const json &clip = fixer.report, &event = clip["events"][0], &acting = event["acting"];
+  for (const json& object : {clip, event, acting}) {
+    for (const auto& [key, value] : object.items()) {
+      CHECK_MESSAGE(page.find("`" + key + "`") != std::string::npos, key);
+    }
+  }
+}
+
 TEST_CASE("fix: what is refused stays as animated, and nothing else changes") {
   Fixer fixer(swings({40, 110}));
   CHECK(fixer.run().code == 0);
