@@ -21,6 +21,7 @@ using nlohmann::ordered_json;
 constexpr const char* kList = "spherechain_decisions";
 constexpr double kStepMax = 1;                         // % of the height a frame: a faster fade is a jerk
 constexpr std::array<double, 3> kFades{0.35, 0.7, 1};  // seconds, until one is slow enough
+constexpr double kHeldMin = 0.5;                       // degrees: a turn that one may see
 constexpr double kDeeperMax = 2;                       // mm: an event is still as deep as it was
 
 class DecisionReader {
@@ -126,7 +127,8 @@ class Refuser {
     return std::any_of(joints_[kept].begin(), joints_[kept].end(), [&](Index joint) {
       if (!needs(refused, joint)) return false;
       for (int f = std::max({a.from, b.from, 0}); f <= std::min({a.to, b.to, facts_.clip.frames() - 1}); ++f) {
-        if (!mend_.turns[static_cast<std::size_t>(f) * facts_.clip.count() + joint].isZero(0)) return true;
+        const Vec3& turn = mend_.turns[static_cast<std::size_t>(f) * facts_.clip.count() + joint];
+        if (to_degrees(turn.norm()) > kHeldMin) return true;
       }
       return false;
     });

@@ -89,7 +89,7 @@ std::string event_row(const MendedClip& clip, std::size_t number) {
                                 outcome_name(e.outcome));
   const Acting& acting = clip.event_acting[number];
   if (acting.verdict != ActingVerdict::kUnchanged) out += ", " + acting_text(acting);
-  const char* separator = "; turns all the same for ";
+  const char* separator = "; stays turned where it meets ";
   for (const std::size_t holder :
        clip.refusals.held_by.empty() ? std::vector<std::size_t>() : clip.refusals.held_by[number]) {
     out += separator + event_name(clip.mend.events[holder].before);

@@ -44,8 +44,8 @@ const nameOf = (event) => `${event.parts.join(', ')}, ${framesText(event)}`;
 const listText = (sizes, text) => Object.entries(sizes).map(([name, size]) => `${name} ${text(size)}`);
 
 // Whether two events need one joint in the same frames: then one keeps the other's turns.
-const overlap = (a, b) =>
-  a.from - 1 <= b.to + 1 && b.from - 1 <= a.to + 1 && Object.keys(a.acting.turns_degrees).some((joint) => joint in b.acting.turns_degrees);
+const turned = ({ acting }) => Object.keys(acting.turns_degrees).filter((joint) => acting.turns_degrees[joint] > 0.5);
+const overlap = (a, b) => a.from - 1 <= b.to + 1 && b.from - 1 <= a.to + 1 && turned(a).some((joint) => turned(b).includes(joint));
 
 export function fillFixPanel(panel, { model, store, flyToContact }) {
   const clip = model.clips[0];
