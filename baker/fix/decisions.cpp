@@ -98,7 +98,8 @@ class Refuser {
     const double allowed = std::max(kStepMax, step_of(turns));
     for (const double fade : kFades) {
       mend_.turns = turns;
-      take_back(fade);
+      fade_ = fade;
+      take_back();
       if (step_of(mend_.turns) <= allowed) break;
     }
     close_windows();
@@ -109,7 +110,7 @@ class Refuser {
       if (is_refused_[e] == 0) continue;
       mend_.events[e].outcome = MendOutcome::kRefused;
       for (std::size_t k = 0; k < mend_.events.size(); ++k) {
-        if (is_kept_[k] != 0 && hold_one(k, e)) out.held_by[e].push_back(k);
+        if (is_kept_[k] != 0 && holds(k, e)) out.held_by[e].push_back(k);
       }
     }
     return out;
@@ -121,17 +122,18 @@ class Refuser {
   bool needs(std::size_t event, Index joint) const {
     return std::binary_search(joints_[event].begin(), joints_[event].end(), joint);
   }
-  bool hold_one(std::size_t kept, std::size_t refused) const {
-    const Frames a = frames_of(mend_.events[kept]), b = frames_of(mend_.events[refused]);
-    if (a.from > b.to || b.from > a.to) return false;
-    return std::any_of(joints_[kept].begin(), joints_[kept].end(), [&](Index joint) {
-      if (!needs(refused, joint)) return false;
-      for (int f = std::max({a.from, b.from, 0}); f <= std::min({a.to, b.to, facts_.clip.frames() - 1}); ++f) {
+  // True if an accepted event keeps a joint turned in a frame of a refused one.
+  bool holds(std::size_t kept, std::size_t refused) const {
+    const MendedEvent& its = mend_.events[refused];
+    const double reach = fade_ * facts_.clip.fps();
+    for (int f = static_cast<int>(its.before.from); f <= static_cast<int>(its.before.to); ++f) {
+      if (distance({kept}, f) >= reach) continue;
+      for (const Index joint : joints_[kept]) {
         const Vec3& turn = mend_.turns[static_cast<std::size_t>(f) * facts_.clip.count() + joint];
-        if (to_degrees(turn.norm()) > kHeldMin) return true;
+        if (needs(refused, joint) && to_degrees(turn.norm()) > kHeldMin) return true;
       }
-      return false;
-    });
+    }
+    return false;
   }
 
   bool is_in(std::size_t event, const std::vector<std::size_t>& run) const {
@@ -156,7 +158,7 @@ class Refuser {
   }
 
   // A turn stays only if an accepted event needs its joint.
-  void take_back(double fade) {
+  void take_back() {
     for (const std::vector<std::size_t>& run : contiguous_runs(mend_.in_window, facts_.loops)) {
       std::vector<std::size_t> refused, kept;
       for (std::size_t e = 0; e < mend_.events.size(); ++e) {
@@ -165,12 +167,12 @@ class Refuser {
         if (is_kept_[e] != 0) kept.push_back(e);
       }
       if (refused.empty()) continue;
-      for (Index joint = 0; joint < facts_.clip.count(); ++joint) take_back(joint, run, refused, kept, fade);
+      for (Index joint = 0; joint < facts_.clip.count(); ++joint) take_back(joint, run, refused, kept);
     }
   }
 
   void take_back(Index joint, const std::vector<std::size_t>& run, std::vector<std::size_t> refused,
-                 std::vector<std::size_t> kept, double fade) {
+                 std::vector<std::size_t> kept) {
     // A joint that no event needs turns along with others: a hand on the same thing.
     const auto is_needed = [&](std::size_t e) { return needs(e, joint); };
     const bool goes_along =
@@ -180,7 +182,7 @@ class Refuser {
       std::erase_if(kept, [&](std::size_t e) { return !needs(e, joint); });
     }
     if (refused.empty()) return;
-    const double pad = kWindowPad * facts_.clip.fps(), length = fade * facts_.clip.fps();
+    const double pad = kWindowPad * facts_.clip.fps(), length = fade_ * facts_.clip.fps();
     const auto falls = [&](double distance) {
       const double t = std::clamp(distance / length, 0.0, 1.0);
       return 1 - t * t * (3 - 2 * t);
@@ -295,6 +297,7 @@ class Refuser {
   ActingMeasure measure_;
   std::vector<char> is_refused_, is_kept_;
   std::vector<std::vector<Index>> joints_;  // of each event
+  double fade_ = 0;                         // seconds
 };
 
 }  // namespace

@@ -43,9 +43,9 @@ const framesText = ({ from, to }) => (from === to ? `frame ${from}` : `frames ${
 const nameOf = (event) => `${event.parts.join(', ')}, ${framesText(event)}`;
 const listText = (sizes, text) => Object.entries(sizes).map(([name, size]) => `${name} ${text(size)}`);
 
-// Whether two events need one joint in the same frames: then one keeps the other's turns.
 const turned = ({ acting }) => Object.keys(acting.turns_degrees).filter((joint) => acting.turns_degrees[joint] > 0.5);
-const overlap = (a, b) => a.from - 1 <= b.to + 1 && b.from - 1 <= a.to + 1 && turned(a).some((joint) => turned(b).includes(joint));
+// Whether two events need one joint at the same time: then one keeps the other's turns.
+const overlap = (a, b) => a.acting.from <= b.to + 1 && b.from - 1 <= a.acting.to && turned(a).some((joint) => turned(b).includes(joint));
 
 export function fillFixPanel(panel, { model, store, flyToContact }) {
   const clip = model.clips[0];
