@@ -79,7 +79,7 @@ struct CheckOptions {
 ExitCode run_check(const CheckOptions& options);
 
 struct FixOptions {
-  std::string input, output, clip, motion, keep, baseline, report, character;
+  std::string input, output, clip, motion, keep, baseline, decisions, report, character;
   GivenSize size;
   std::vector<std::string> parts;
   double budget = 25, margin = 1.5;  // degrees; mm

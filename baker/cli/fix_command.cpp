@@ -34,8 +34,15 @@ struct Pages {
   std::string notes;  // a line for each that cannot be shown: what was mended is written by then
 };
 
-// Pages of the clips that changed, before and after side by side.
-Pages write_pages(const FixOptions& options, const fs::path& page, const FixedCharacter& fixed, OwnFolder& report) {
+bool has_page(const Mend& mend) {
+  return !mend.is_still() || std::any_of(mend.events.begin(), mend.events.end(), [](const MendedEvent& event) {
+    return event.outcome == MendOutcome::kRefused;
+  });
+}
+
+// Pages of the clips that changed, or would have, before and after side by side.
+Pages write_pages(const FixOptions& options, const fs::path& page, const FixedCharacter& fixed, OwnFolder& report,
+                  Progress& progress) {
   Pages out;
   if (!fs::is_regular_file(page)) {
     out.notes =
@@ -44,8 +51,7 @@ Pages write_pages(const FixOptions& options, const fs::path& page, const FixedCh
   }
   std::optional<AnimatedAsset> before, after;
   for (std::size_t i = 0; i < fixed.clips.size(); ++i) {
-    const Mend& mend = fixed.clips[i].mend;
-    if (std::all_of(mend.turns.begin(), mend.turns.end(), [](const Vec3& x) { return x.isZero(0); })) continue;
+    if (!has_page(fixed.clips[i].mend)) continue;
     for (std::optional<AnimatedAsset>* one : {&before, &after}) {
       if (!*one)
         one->emplace(OpenAsset(fixed.asset, options.input), options.input, options.input, MotionChoice(),
@@ -57,12 +63,15 @@ Pages write_pages(const FixOptions& options, const fs::path& page, const FixedCh
     page_options.title = fs::path(options.input).filename().string() + ": before (grey) and after (blue)";
     page_options.names = {"before", "after"};
     page_options.they_meet = false;
+    page_options.events = page_events(fixed.clips[i]);
     page_options.fps = before->clips()[0].fps;  // the mended one's own may be another
     after->play_clip(fixed.after[i], {0, page_options.fps});
-    const Place beside{mm_per_unit(before->asset()) * before->frame().height / 1000, 0, 0};
+    const std::string doing = fmt::format("page {} of {}", i + 1, fixed.clips.size());
     std::string html;
     try {
-      html = view_page_of_two(*before, *after, &beside, page_options, [](int) {});
+      html = view_page_of_two(*before, *after, nullptr, page_options, [&](int frame) {
+        if (frame % 10 == 0) progress.show(fmt::format("{}, frame {} of {}", doing, frame, before->frame_count()));
+      });
     } catch (const Error& error) {
       if (error.code() != ExitCode::kUsage) throw;
       const std::string what = error.what();  // and in brackets what to do, which other commands can
@@ -95,7 +104,8 @@ void check_files(const FixOptions& options, bool writes_bvh) {
     throw Error(ExitCode::kUsage, "--motion: " + options.motion + " holds meshes, and no joints to turn");
   }
   if (!options.report.empty()) OwnFolder::check(options.report, kKind, is_report_file);
-  std::vector<CommandFile> inputs{{"--keep", options.keep}, {"--baseline", options.baseline}};
+  std::vector<CommandFile> inputs{
+      {"--keep", options.keep}, {"--baseline", options.baseline}, {"--decisions", options.decisions}};
   MotionChoice motion;
   motion.motion = options.motion;
   check_outputs(with_motion(with_source(std::move(inputs), "INPUT", options.input), motion),
@@ -119,6 +129,7 @@ ExitCode run_fix(const FixOptions& options) {
   if (!options.character.empty()) job.config.bake.import.character = options.character;
   if (options.size.is_given()) job.config.bake.size = options.size;
   if (!options.baseline.empty()) job.baseline = read_baseline(options.baseline, false);
+  if (!options.decisions.empty()) job.decisions = read_decisions(options.decisions);
   job.parts = options.parts;
   job.mend = {options.budget, options.margin};
   check_files(options, writes_bvh);
@@ -135,7 +146,7 @@ ExitCode run_fix(const FixOptions& options) {
       progress.show("report");
       OwnFolder report(options.report, kKind);
       report.write("fix.json", fix_json(fixed.clips));
-      pages = write_pages(options, page, fixed, report);
+      pages = write_pages(options, page, fixed, report, progress);
       report.finish();
     }
     if (writes_bvh) {
@@ -147,6 +158,14 @@ ExitCode run_fix(const FixOptions& options) {
   say(stderr, "{}", pages.notes);
   if (!options.baseline.empty() && !fixed.is_in_baseline) {
     say(stderr, "spherechain: warning: {}: has no event of this character and these clips\n", options.baseline);
+  }
+  for (const Decision& decision : fixed.unused_decisions) {
+    const bool is_elsewhere =
+        !options.clip.empty() && std::none_of(fixed.clips.begin(), fixed.clips.end(),
+                                              [&](const MendedClip& clip) { return clip.name == decision.clip; });
+    if (is_elsewhere) continue;
+    say(stderr, "spherechain: warning: {}: is about no event of this run: {}\n", options.decisions,
+        decision_text(decision));
   }
   for (const std::string& part : fixed.unused_parts) {
     say(stderr, "spherechain: warning: {}: a rule names '{}', which this character has not\n", options.keep, part);

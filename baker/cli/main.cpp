@@ -234,6 +234,8 @@ int main(int argc, char** argv) {
   add_size(*fix_command, fix.size);
   add_name(*fix_command, "--keep", fix.keep, "Rules, as check --config has them: what is fine as it is");
   add_name(*fix_command, "--baseline", fix.baseline, "What check --accept wrote: faults that are accepted are left");
+  add_name(*fix_command, "--decisions", fix.decisions,
+           "What a page of --report saved: events that it refuses stay as animated");
   fix_command->add_option("--parts", fix.parts, "Body parts, with commas between: only faults of these are mended")
       ->delimiter(',')
       ->check(refuse_empty);

@@ -40,7 +40,7 @@ void Progress::show(const std::string& text) {
 }
 
 void Progress::write_lines() {
-  constexpr std::chrono::seconds kPause(30);
+  constexpr std::chrono::seconds kPause(10);
   std::unique_lock lock(mutex_);
   is_waiting_ = true;
   changed_.notify_one();

@@ -9,7 +9,7 @@
 namespace spherechain::baker {
 
 // Shows the work of a command: a line on stderr that is replaced by the next. Where stderr is no terminal, a line every
-// half minute, for logs.
+// ten seconds, for logs.
 class Progress {
  public:
   explicit Progress(std::string title);

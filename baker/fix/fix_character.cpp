@@ -48,7 +48,7 @@ class Fixer {
  public:
   // `bytes`: the character's file, where that is written.
   Fixer(const FixJob& job, std::string bytes, const Bake& baked, const std::function<void(const std::string&)>& report)
-      : job_(job), roles_(baked.roles), report_(report) {
+      : job_(job), roles_(baked.roles), report_(report), is_used_(job.decisions.size(), 0) {
     out_.bytes = std::move(bytes);
     out_.asset.assign(reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size());
     animated_.emplace(OpenAsset(out_.asset, job.input), job.input, job.input, MotionChoice{{}, job.clip, {}},
@@ -71,8 +71,13 @@ class Fixer {
     if (animated_->asset()->bone_count() == 0 || rig().bones.empty()) fail("no bones move it");
     if (are_bound_at_one_place())
       fail("its joints are all bound at one place, and turn about no point of their own (bind them where they are)");
+    clip_count_ = job_.recordings.size();
+    if (has_own) clip_count_ += job_.numbers ? job_.numbers->size() : animated_->clips().size();
     if (has_own) fix_own();
     for (const std::string& recording : job_.recordings) fix_recording(recording);
+    for (std::size_t d = 0; d < job_.decisions.size(); ++d) {
+      if (is_used_[d] == 0) out_.unused_decisions.push_back(job_.decisions[d]);
+    }
     return std::move(out_);
   }
 
@@ -168,10 +173,13 @@ class Fixer {
     };
     MendOptions options = job_.mend;
     options.is_soft_parted = !job_.parts.empty();  // who names a part means it
-    MendedClip mended{clip.name, mend_clip(*animated_, roles, clip, options, leave,
-                                           [&](const std::string& doing) { report_(clip.name + ": " + doing); })};
-    mended.others = static_cast<int>(
-        std::erase_if(mended.mend.events, [&](const MendedEvent& event) { return !is_asked_for(event.before); }));
+    const auto report = [&](const std::string& doing) { report_(clip_line(clip.name) + doing); };
+    MendedClip mended{clip.name, mend_clip(*animated_, roles, clip, options, leave, report)};
+    const ClipFacts facts = clip_facts(*animated_, roles, clip, options);
+    decide(facts, report, mended);
+    leave_out_others(mended);
+    report("comparing");
+    measure_acting(facts, mended);
     std::vector<Channel> turned;
     if (!mended.mend.is_still()) {
       const TurnedClip with_turns(rig(), *clip.clip, clip.fps, clip.own_count, mended.mend.joints);
@@ -185,6 +193,53 @@ class Fixer {
     return turned;
   }
 
+  // "clip 3 of 12, walk: "
+  std::string clip_line(const std::string& name) const {
+    const std::string place = fmt::format("clip {} of {}, ", out_.clips.size() + 1, clip_count_);
+    return (clip_count_ > 1 ? place : "") + name + ": ";
+  }
+
+  void decide(const ClipFacts& facts, const std::function<void(const std::string&)>& report, MendedClip& mended) {
+    std::vector<char> is_refused(mended.mend.events.size(), 0);
+    for (std::size_t d = 0; d < job_.decisions.size(); ++d) {
+      for (std::size_t e = 0; e < is_refused.size(); ++e) {
+        if (!job_.decisions[d].is_of(mended.name, mended.mend.events[e])) continue;
+        is_used_[d] = 1;
+        if (job_.decisions[d].is_refused) is_refused[e] = 1;
+      }
+    }
+    if (std::find(is_refused.begin(), is_refused.end(), 1) == is_refused.end()) return;
+    report("leaving what was refused");
+    mended.refusals = refuse_events(facts, roles_, is_refused, mended.mend);
+  }
+
+  // Removes the events that nobody asked for.
+  void leave_out_others(MendedClip& mended) const {
+    std::vector<MendedEvent> events;
+    std::vector<std::vector<std::size_t>> held_by;
+    std::vector<std::size_t> places(mended.mend.events.size(), 0);
+    for (std::size_t e = 0; e < places.size(); ++e) {
+      places[e] = events.size();
+      if (!is_asked_for(mended.mend.events[e].before)) continue;
+      events.push_back(std::move(mended.mend.events[e]));
+      if (!mended.refusals.held_by.empty()) held_by.push_back(mended.refusals.held_by[e]);
+    }
+    for (std::vector<std::size_t>& holders : held_by) {
+      for (std::size_t& holder : holders) holder = places[holder];
+    }
+    mended.others = static_cast<int>(places.size() - events.size());
+    mended.mend.events = std::move(events);
+    mended.refusals.held_by = std::move(held_by);
+  }
+
+  void measure_acting(const ClipFacts& facts, MendedClip& mended) const {
+    ActingMeasure measure(facts, roles_);
+    mended.acting = measure.of_clip(mended.mend.turns);
+    for (std::size_t e = 0; e < mended.mend.events.size(); ++e) {
+      mended.event_acting.push_back(measure.of_event(mended.mend.events, e, mended.mend.turns));
+    }
+  }
+
   bool is_asked_for(const Event& event) const {
     return job_.parts.empty() || std::any_of(job_.parts.begin(), job_.parts.end(), [&](const std::string& part) {
              return part == event.parts[0] || part == event.parts[1];
@@ -196,6 +251,8 @@ class Fixer {
   const std::function<void(const std::string&)>& report_;
   std::optional<AnimatedAsset> animated_;
   std::vector<BodyPart> parts_;
+  std::size_t clip_count_ = 0;  // that are to be fixed
+  std::vector<char> is_used_;   // by decision
   FixedCharacter out_;
 };
 

@@ -22,16 +22,18 @@ struct FixJob {
   CheckConfig config;
   Baseline baseline;
   std::vector<std::string> parts;  // fix only faults of these body parts; empty: all
+  std::vector<Decision> decisions;
   MendOptions mend;
 };
 
 struct FixedCharacter {
   std::string bytes;  // the fixed file: the character's, or the recording's
   std::vector<MendedClip> clips;
-  std::vector<Clip> before, after;        // the same clips in full
-  std::string asset;                      // the baked character's bytes
-  std::vector<std::string> unused_parts;  // named by a rule, but missing in the character
-  bool is_in_baseline = false;            // the baseline has events of these clips
+  std::vector<Clip> before, after;         // the same clips in full
+  std::string asset;                       // the baked character's bytes
+  std::vector<std::string> unused_parts;   // named by a rule, but missing in the character
+  bool is_in_baseline = false;             // the baseline has events of these clips
+  std::vector<Decision> unused_decisions;  // about no event of these clips
 };
 
 // Bakes the character and fixes its clips one after another. `report` receives the current step as text. Throws Error:

@@ -68,15 +68,46 @@ std::string advice_on(const std::vector<MendedEvent>& events) {
   return out;
 }
 
+std::string event_name(const Event& event) {
+  return fmt::format("{}, {} {}-{}", event.parts[0], event.parts[1], static_cast<int>(event.from),
+                     static_cast<int>(event.to));
+}
+
+// "visible: left hand 42 mm"
+std::string acting_text(const Acting& acting) {
+  if (acting.verdict == ActingVerdict::kUnchanged) return verdict_name(acting.verdict);
+  std::string out = acting.verdict == ActingVerdict::kChangesPose ? "changes the pose" : verdict_name(acting.verdict);
+  if (acting.moves_mm.empty()) return out;
+  return out + fmt::format(": {} {:.0f} mm", acting.moves_mm.front().first, acting.move_mm());
+}
+
+std::string event_row(const MendedClip& clip, std::size_t number) {
+  const MendedEvent& e = clip.mend.events[number];
+  std::string out = fmt::format("  {:<34} {:>5}-{:<5} {:>6.1f} -> {:>5.1f} mm  {:>5.1f} degrees  {}",
+                                e.before.parts[0] + ", " + e.before.parts[1], static_cast<int>(e.before.from),
+                                static_cast<int>(e.before.to), e.before.depth_mm, e.depth_after_mm, e.turn_degrees,
+                                outcome_name(e.outcome));
+  const Acting& acting = clip.event_acting[number];
+  if (acting.verdict != ActingVerdict::kUnchanged) out += ", " + acting_text(acting);
+  const char* separator = "; stays turned where it meets ";
+  for (const std::size_t holder :
+       clip.refusals.held_by.empty() ? std::vector<std::size_t>() : clip.refusals.held_by[number]) {
+    out += separator + event_name(clip.mend.events[holder].before);
+    separator = "; ";
+  }
+  return out + "\n";
+}
+
 std::string clip_text(const MendedClip& clip) {
   std::map<MendOutcome, int> counts;
   std::string rows;
-  for (const MendedEvent& e : clip.mend.events) {
-    ++counts[e.outcome];
-    rows += fmt::format("  {:<34} {:>5}-{:<5} {:>6.1f} -> {:>5.1f} mm  {:>5.1f} degrees  {}\n",
-                        e.before.parts[0] + ", " + e.before.parts[1], static_cast<int>(e.before.from),
-                        static_cast<int>(e.before.to), e.before.depth_mm, e.depth_after_mm, e.turn_degrees,
-                        outcome_name(e.outcome));
+  for (std::size_t e = 0; e < clip.mend.events.size(); ++e) {
+    ++counts[clip.mend.events[e].outcome];
+    rows += event_row(clip, e);
+  }
+  for (const Event& fault : clip.refusals.new_faults) {
+    rows += fmt::format("  {}: {:.1f} mm deep, which it was not before: what was refused moved out of its way\n",
+                        event_name(fault), fault.depth_mm);
   }
   std::string out =
       fmt::format("{}: {} event{}", clip.name, clip.mend.events.size(), clip.mend.events.size() == 1 ? "" : "s");
@@ -86,9 +117,52 @@ std::string clip_text(const MendedClip& clip) {
   if (compared.feet_mm >= 0.005) out += fmt::format("; feet move {:.2f} mm", compared.feet_mm);
   const std::vector<double> turns = turns_of(clip);
   return out +
-         fmt::format("; turns {:.1f} degrees in the median, {:.1f} in p90, {:.1f} at most; {} rounds, {:.1f} s\n{}",
-                     quantile(turns, 0.5), quantile(turns, 0.9), most_of(clip), clip.mend.rounds, clip.seconds, rows) +
+         fmt::format(
+             "; turns {:.1f} degrees in the median, {:.1f} in p90, {:.1f} at most; acting {}; {} rounds, {:.1f} s\n{}",
+             quantile(turns, 0.5), quantile(turns, 0.9), most_of(clip), acting_text(clip.acting), clip.mend.rounds,
+             clip.seconds, rows) +
          advice_on(clip.mend.events);
+}
+
+ordered_json acting_json(const Acting& acting) {
+  ordered_json moves = ordered_json::object(), turns = ordered_json::object();
+  for (const auto& [end, mm] : acting.moves_mm) moves[end] = mm;
+  for (const auto& [joint, degrees] : acting.turns) turns[joint] = degrees;
+  return {{"from", acting.from},
+          {"to", acting.to},
+          {"verdict", verdict_name(acting.verdict)},
+          {"moves_mm", std::move(moves)},
+          {"turns_degrees", std::move(turns)},
+          {"step_percent", acting.step_percent}};
+}
+
+ordered_json events_json(const MendedClip& clip) {
+  ordered_json out = ordered_json::array();
+  for (std::size_t i = 0; i < clip.mend.events.size(); ++i) {
+    const MendedEvent& e = clip.mend.events[i];
+    out.push_back({{"parts", e.before.parts},
+                   {"from", static_cast<int>(e.before.from)},
+                   {"to", static_cast<int>(e.before.to)},
+                   {"deepest", static_cast<int>(e.before.deepest)},
+                   {"depth_mm_before", e.before.depth_mm},
+                   {"depth_mm_after", e.depth_after_mm},
+                   {"turn_degrees", e.turn_degrees},
+                   {"outcome", outcome_name(e.outcome)},
+                   {"acting", acting_json(clip.event_acting[i])},
+                   {"held_by", clip.refusals.held_by.empty() ? std::vector<std::size_t>() : clip.refusals.held_by[i]}});
+  }
+  return out;
+}
+
+ordered_json new_faults_json(const MendedClip& clip) {
+  ordered_json out = ordered_json::array();
+  for (const Event& fault : clip.refusals.new_faults) {
+    out.push_back({{"parts", fault.parts},
+                   {"from", static_cast<int>(fault.from)},
+                   {"to", static_cast<int>(fault.to)},
+                   {"depth_mm", fault.depth_mm}});
+  }
+  return out;
 }
 
 }  // namespace
@@ -98,21 +172,13 @@ std::string fix_json(const std::vector<MendedClip>& clips) {
   out["writer"] = kWriter;
   out["clips"] = ordered_json::array();
   for (const MendedClip& clip : clips) {
-    ordered_json events = ordered_json::array();
-    for (const MendedEvent& e : clip.mend.events) {
-      events.push_back({{"parts", e.before.parts},
-                        {"from", static_cast<int>(e.before.from)},
-                        {"to", static_cast<int>(e.before.to)},
-                        {"depth_mm_before", e.before.depth_mm},
-                        {"depth_mm_after", e.depth_after_mm},
-                        {"turn_degrees", e.turn_degrees},
-                        {"outcome", outcome_name(e.outcome)}});
-    }
     const std::vector<double> turns = turns_of(clip);
     out["clips"].push_back(
         {{"clip", clip.name},
-         {"events", std::move(events)},
+         {"events", events_json(clip)},
          {"events_of_other_parts", clip.others},
+         {"new_faults", new_faults_json(clip)},
+         {"acting", acting_json(clip.acting)},
          {"turn_degrees", {{"median", quantile(turns, 0.5)}, {"p90", quantile(turns, 0.9)}, {"max", most_of(clip)}}},
          {"feet_mm", clip.mend.compared.feet_mm},
          {"feet_degrees", clip.mend.compared.feet_degrees},
@@ -125,6 +191,8 @@ std::string fix_json(const std::vector<MendedClip>& clips) {
   }
   return json_text(out, 1) + "\n";
 }
+
+std::string page_events(const MendedClip& clip) { return json_text(events_json(clip), -1); }
 
 // Clips without an event are counted.
 std::string fix_text(const std::vector<MendedClip>& clips) {
@@ -166,10 +234,11 @@ bool changes_any(const std::vector<MendedClip>& clips) {
 
 bool leaves_faults(const std::vector<MendedClip>& clips) {
   return std::any_of(clips.begin(), clips.end(), [](const MendedClip& clip) {
-    return std::any_of(clip.mend.events.begin(), clip.mend.events.end(), [](const MendedEvent& e) {
-      return e.outcome != MendOutcome::kCleared && e.outcome != MendOutcome::kFold &&
-             e.outcome != MendOutcome::kAccepted;
-    });
+    return !clip.refusals.new_faults.empty() ||
+           std::any_of(clip.mend.events.begin(), clip.mend.events.end(), [](const MendedEvent& e) {
+             return e.outcome != MendOutcome::kCleared && e.outcome != MendOutcome::kFold &&
+                    e.outcome != MendOutcome::kAccepted && e.outcome != MendOutcome::kRefused;
+           });
   });
 }
 

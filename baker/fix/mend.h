@@ -15,9 +15,9 @@
 
 namespace spherechain::baker {
 
-// The last three say why a fault stayed about as deep: a joint would exceed the budget, or the range of an elbow or
-// knee; or every way out shakes or causes other penetrations.
-enum class MendOutcome { kCleared, kReduced, kFold, kAccepted, kOverBudget, kJointLimits, kNoWayOut };
+// kOverBudget to kNoWayOut say why a fault stayed about as deep: a joint would exceed the budget, or the range of an
+// elbow or knee; or every way out shakes or causes other penetrations. kRefused: an animator left it as animated.
+enum class MendOutcome { kCleared, kReduced, kFold, kAccepted, kOverBudget, kJointLimits, kNoWayOut, kRefused };
 const char* outcome_name(MendOutcome outcome);
 
 // A penetration of two body parts over some frames, before and after the fix.

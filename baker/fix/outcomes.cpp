@@ -54,8 +54,8 @@ MendOutcome outcome_of(WorkingState state) {
 }  // namespace
 
 const char* outcome_name(MendOutcome outcome) {
-  static constexpr std::array<const char*, 7> kNames{"cleared",     "reduced",      "fold",      "accepted",
-                                                     "over_budget", "joint_limits", "no_way_out"};
+  static constexpr std::array<const char*, 8> kNames{"cleared",     "reduced",      "fold",       "accepted",
+                                                     "over_budget", "joint_limits", "no_way_out", "refused"};
   return kNames[static_cast<std::size_t>(outcome)];
 }
 

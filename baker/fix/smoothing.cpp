@@ -17,7 +17,7 @@ constexpr double kStepMost = 0.01;    // heights that a joint moves further in a
 constexpr double kStepShare = 0.25;   // of its own step: where the clip jumps, more is not seen
 constexpr double kSpread = 0.02;      // radians a frame: the slope of turns that are spread
 constexpr int kSmoothings = 4;        // with a Gaussian of 1, 2, 4, ... frames
-constexpr int kFades = 10;            // to this share each, then to nothing
+constexpr int kFadeSteps = 10;        // to this share each, then to nothing
 constexpr double kFade = 0.85;
 
 // 1 in the marked frames, falling to 0 within `frames` of them.
@@ -126,10 +126,10 @@ MarkedTurns shaking_turns(const TurnedClip& clip, const Turns& turns, double hei
 void calm_turns(const TurnedClip& clip, double height, bool loops, Turns& turns) {
   MarkedTurns shaking = shaking_turns(clip, turns, height);
   const double pad = kWindowPad * clip.fps();
-  for (int attempt = 0; attempt <= kSmoothings + kFades && !shaking.empty(); ++attempt) {
+  for (int attempt = 0; attempt <= kSmoothings + kFadeSteps && !shaking.empty(); ++attempt) {
     for (const auto& [joint, marked] : shaking) {
       if (attempt >= kSmoothings) {
-        fade_out(clip, joint, marked, kWindowPad, attempt == kSmoothings + kFades ? 0 : kFade, loops, turns);
+        fade_out(clip, joint, marked, kWindowPad, attempt == kSmoothings + kFadeSteps ? 0 : kFade, loops, turns);
         continue;
       }
       spread(clip, joint, shares_around(marked, 4 * pad, loops), kSpread / (1 << attempt), turns);

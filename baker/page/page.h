@@ -25,6 +25,7 @@ struct PageOptions {
   // Else they are one character, before and after a change: what touches between the two is not shown, the page can lay
   // them over each other, and it opens where the deepest fault was.
   bool they_meet = true;
+  std::string events;  // of such a change: JSON, as fix.json has a clip's
   Radius radius = SC_RADIUS_DETECT;
   const Colliders* colliders = nullptr;  // to show; null: none
   Responder* responder = nullptr;        // corrects the poses; null: they stay as animated

@@ -29,6 +29,7 @@ namespace {
 using nlohmann::ordered_json;
 using Triangles = std::array<std::uint32_t, 2>;
 
+constexpr double kApart = 1.05;  // between a character before and after a change, as a share of its width
 constexpr std::array<const char*, 2> kColours{"#c9c2b6", "#8fb0cc"};
 
 const ClipFrames& only_clip(const AnimatedAsset& animated, const char* option) {
@@ -55,8 +56,8 @@ Vec3 stand_of(const AnimatedAsset& animated, const BodyFrame& axes) {
   return middle - axes.up.dot(middle - axes.origin) * axes.up;
 }
 
-// From the second's space to the first's. They are one character where they do not meet.
-Affine place_of(const AnimatedAsset& first, const AnimatedAsset& second, const Place* place, bool they_meet) {
+// From the second's space to the first's.
+Affine place_of(const AnimatedAsset& first, const AnimatedAsset& second, const Place* place) {
   const double unit = mm_per_unit(second.asset()) / mm_per_unit(first.asset());
   Affine out = Affine::Identity();
   if (place == nullptr) {
@@ -70,7 +71,6 @@ Affine place_of(const AnimatedAsset& first, const AnimatedAsset& second, const P
   const double angle = place->degrees * std::numbers::pi / 180, metre = 1000 / mm_per_unit(first.asset());
   out.linear() = unit * there * Eigen::AngleAxisd(angle, Vec3::UnitY()) * own.transpose();
   const Vec3 step = metre * (place->left * to.left + place->forward * to.forward);
-  if (!they_meet) return Affine(Eigen::Translation3d(step));
   const Vec3 stand = stand_of(first, to) + step;
   out.translation() = stand - out.linear() * stand_of(second, from);
   return out;
@@ -256,6 +256,18 @@ class Contacts {
   std::vector<Penetration> measured_;
 };
 
+// How far points are from an upright line through the middle of their box.
+double reach_of(const std::vector<Vec3>& points, const Vec3& up) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : points) box.extend(p);
+  double out = 0;
+  for (const Vec3& p : points) {
+    const Vec3 arm = p - box.center();
+    out = std::max(out, (arm - up.dot(arm) * up).norm());
+  }
+  return out;
+}
+
 // Who is who.
 ordered_json two_colours(const Both& both) {
   std::vector<std::uint16_t> of(both.character().source_triangles.size(), 1);
@@ -274,7 +286,7 @@ std::string view_page_of_two(const AnimatedAsset& first, const AnimatedAsset& se
   only_clip(second, "--with-clip");
   first.check_clusters();
   second.check_clusters();
-  const Affine placed = place_of(first, second, place, options.they_meet);
+  const Affine placed = place_of(first, second, place);
   const Both both(first, second, placed, options.names);
   const BodyFrame axes = page_axes(first);
   const ordered_json clip_json{{"name", clip.name.empty() ? options.motion : clip.name},
@@ -289,11 +301,6 @@ std::string view_page_of_two(const AnimatedAsset& first, const AnimatedAsset& se
                     {"radius", options.radius == SC_RADIUS_FIT ? "fit" : "detect"},
                     {"clips", ordered_json::array({clip_json})},
                     {"look", two_colours(both)}};
-  if (!options.they_meet) {
-    data["change"] = {{"triangle", both.first_triangle()},
-                      {"part", both.first_part()},
-                      {"step", to_json(Vec3(placed.translation()))}};
-  }
   PageMotion motion(both.character(), axes);
   Contacts found(first, second, both, options.they_meet);
   FrameLists<Triangles> contacts;
@@ -303,13 +310,20 @@ std::string view_page_of_two(const AnimatedAsset& first, const AnimatedAsset& se
     return page_mesh(rest, both.character().source_triangles, both.weights(), both.parts(), {});
   };
   data["mesh"] = mesh(both.character().source_positions);
+  if (!options.they_meet) {
+    data["change"] = {{"triangle", both.first_triangle()},
+                      {"part", both.first_part()},
+                      {"events", ordered_json::parse(options.events)}};
+  }
   const double still = static_cast<double>(page.size() + json_text(data, -1).size());
+  double reach = 0;
   for (int i = 0; i < first.frame_count(); ++i) {
     progress(i);
     std::array<std::vector<Vec3>, 2> own;
     const Deformation deformation = both.deformation(i, own);
     found.find(own, i > 0);
     own[0].insert(own[0].end(), own[1].begin(), own[1].end());
+    reach = std::max(reach, reach_of(own[0], axes.up));
     motion.add(deformation, own[0]);
     contacts.add(found.triangles);
     penetrations.add(found.penetrations());
@@ -321,6 +335,7 @@ std::string view_page_of_two(const AnimatedAsset& first, const AnimatedAsset& se
   data["frames"] = {{"count", first.frame_count()},       {"fps", options.fps},       {"numbers", base64(numbers)},
                     {"seconds", base64(seconds)},         {"times", base64(seconds)}, {"contacts", contacts.json()},
                     {"penetrations", penetrations.json()}};
+  if (!options.they_meet) data["change"]["distance"] = kApart * 2 * reach;
   data["motion"] = motion.json();
   data["mesh"] = mesh(motion.rest());
   std::string html = page.fill(data);

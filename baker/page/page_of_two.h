@@ -17,8 +17,8 @@ struct Place {
 
 // The page of two characters, frame by frame beside each other: the contacts of each, and those between them. The
 // second's motion starts with the first's; where it is shorter, its last pose stays. Without a place both stand where
-// their files have them. One character before and after a change is shown with itself as it is then, and placed from
-// where it is. Throws what view_page() throws; and Error(kUsage) where one plays several clips.
+// their files have them. One character before and after a change stands in one place; the page moves the two
+// apart. Throws what view_page() throws; and Error(kUsage) where one plays several clips.
 std::string view_page_of_two(const AnimatedAsset& first, const AnimatedAsset& second, const Place* place,
                              const PageOptions& options, const std::function<void(int)>& progress);
 

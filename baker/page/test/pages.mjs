@@ -26,6 +26,12 @@ export function makePages({ tool, human, huesitos, poses, folder }) {
   run('view', asset, ...motion, '14', ...second, '-o', file('two.html'));
   run('fix', huesitos, '-o', file('fixed.glb'), '--report', file('fixed'), '--force');
   return {
+    // Fixes once more, with these options. Returns what it says about the clip.
+    decide(...options) {
+      run('fix', huesitos, '-o', file('fixed.glb'), '--report', file('fixed'), '--force', ...options);
+      return readJson('fixed/fix.json').clips[0];
+    },
+    decisions: file('decisions.json'),
     fixed: file('fixed/clip_0.html'),
     arms: file('arms.html'),
     rest: file('rest.html'),

@@ -1,6 +1,8 @@
 import { h } from './base/dom.js';
 import { readModel } from './model/model.js';
 import { decodePictures } from './model/pictures.js';
+import { addTab } from './panels/tabs.js';
+import { fillFixPanel, fixKeys } from './report/fix_panel.js';
 import { start } from './viewer.js';
 
 const data = JSON.parse(document.getElementById('spherechain-data').textContent);
@@ -17,7 +19,10 @@ function openLinked(model, store) {
 if (data) {
   const model = readModel(data);
   decodePictures(model).then(() => {
-    const { store } = start(model);
+    const panel = model.change ? addTab('Events') : null;
+    const viewer = start(model, panel ? fixKeys : []);
+    const { store } = viewer;
+    if (panel) fillFixPanel(panel, { model, ...viewer });
     addEventListener('hashchange', () => openLinked(model, store));
     openLinked(model, store);
   });

@@ -38,17 +38,19 @@ function bindTheme(store) {
   return toggle;
 }
 
-// Before and after a change: beside each other, or the old pose as a ghost over the new one.
-function addOver(reset, store) {
-  const button = (over, label, title) => {
-    const made = h('button', { type: 'button', 'data-over': `${over}`, title, onclick: () => store.set({ over }) }, label);
-    store.watch(['over'], (state) => made.setAttribute('aria-pressed', state.over === over));
+// Before and after a change: beside each other, the old pose as a ghost over the new one, or one of them.
+function addShowing(reset, store) {
+  const button = (showing, label, title) => {
+    const made = h('button', { type: 'button', 'data-showing': showing, title, onclick: () => store.set({ showing }) }, label);
+    store.watch(['showing'], (state) => made.setAttribute('aria-pressed', state.showing === showing));
     return made;
   };
   const group = h('div', { class: 'segments', role: 'group', 'aria-label': 'Before and after' });
   group.append(
-    button(false, 'Beside', 'Before and after beside each other (O)'),
-    button(true, 'Ghost', 'The old pose as a ghost over the new one (O)'),
+    button('beside', 'Beside', 'Before and after beside each other (O)'),
+    button('ghost', 'Ghost', 'The old pose as a ghost over the new one (O)'),
+    button('before', 'Before', 'The old pose alone (C)'),
+    button('after', 'After', 'The new pose alone (C)'),
   );
   reset.before(group);
 }
@@ -62,13 +64,15 @@ function bindDrawer() {
   });
 }
 
-// The clip shown plays again and again.
+// The clip shown, or the loop in it, plays again and again.
 function runPlayback(store, model) {
   let start = null;
   const tick = (now) => {
     if (!store.state.playing) return;
-    const { first, count } = model.clips[model.clipAt(store.state.frame)];
-    start ??= { clip: first, time: now - (1000 * (store.state.frame - first)) / model.fps };
+    const { frame, loop } = store.state;
+    const { first, count } = loop ?? model.clips[model.clipAt(frame)];
+    const isIn = frame >= first && frame < first + count;
+    start ??= { clip: first, time: now - (isIn ? (1000 * (frame - first)) / model.fps : 0) };
     if (start.clip !== first) start = { clip: first, time: now };
     store.set({ frame: first + (Math.floor(((now - start.time) * model.fps) / 1000) % count) });
     requestAnimationFrame(tick);
@@ -99,7 +103,9 @@ const shown = {
   pivots: false,
   numbers: false,
   oneClip: false, // on the timeline
-  over: false, // before and after a change: one over the other
+  showing: 'beside', // before and after a change: or the old one as a `ghost`, or `before` or `after` alone
+  aside: 0, // the angle, from the character's left to its front, of what is right in the picture
+  loop: null, // frames that play in place of the clip: {first, count}
   ghost: true, // the pose as animated, over the corrected one
   hiddenParts: new Set(),
   sets: new Set(),
@@ -172,12 +178,13 @@ export function start(model, listed = []) {
     stage?.flyToSpheres(model.sphere(frame, a, radius), model.sphere(frame, b, radius));
   };
   // `camera`: from where it is seen, where that is known.
-  const flyToContact = (key, camera = null) => {
+  const flyToContact = (key, camera = null, room = 1) => {
     const contact = model.contacts.now(store.state.frame).find((other) => other.key === key);
-    if (contact) stage?.flyToContact(skin.ballOf(contact.triangles), camera);
+    const side = model.change ? (contact?.parts[0] < model.change.part ? -1 : 1) : 0;
+    if (contact) stage?.flyToContact(skin.ballOf(contact.triangles), camera, side, room);
   };
   const flyToTriangles = (triangles, camera) => stage?.flyToContact(skin.ballOf(triangles), camera);
-  if (model.change) addOver($('reset'), store);
+  if (model.change) addShowing($('reset'), store);
   fillClips($('clip'), store, model);
   fillControls($('controls'), store, model);
   const deepest = model.mask ? null : fillContactPanel($('contacts'), store, model, flyToContact);

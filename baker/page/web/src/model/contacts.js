@@ -111,9 +111,9 @@ export class Contacts {
     return this.of(frame).reduce((sum, { triangles }) => sum + triangles.length, 0);
   }
 
-  // Depth of the deepest fault in a frame, mm; 0 where there is none.
-  depth(frame) {
-    return this.of(frame).filter(isFault).reduce((most, { depth }) => Math.max(most, depth), 0);
+  // Depth of the deepest fault in a frame that `counts`, mm; 0 where there is none.
+  depth(frame, counts = () => true) {
+    return this.of(frame).filter(isFault).filter(counts).reduce((most, { depth }) => Math.max(most, depth), 0);
   }
 
   // Pairs of body parts over a run of frames: [{key, name, frames, worst, kind, depth, visible, swallowed, through}], the

@@ -1,4 +1,4 @@
-import { Contacts } from './contacts.js';
+import { Contacts, isFault } from './contacts.js';
 import { frameNumber } from '../base/format.js';
 import { decode, frameLists } from './frame_lists.js';
 
@@ -172,6 +172,26 @@ export function readModel(data) {
     get start() {
       const isBefore = ({ key }) => Number(key.split('-')[0]) < data.change.part;
       return data.change ? (this.contacts.over(0, count).find(isBefore)?.worst ?? 0) : 0;
+    },
+    // Where before and after a change stand beside each other, seen from an eye to whose right is `aside` (stage.js): the way
+    // from one to the other.
+    apart({ showing, aside }) {
+      if (!data.change || showing !== 'beside') return [0, 0, 0];
+      const { left, forward } = data.axes;
+      return left.map((x, k) => data.change.distance * (Math.cos(aside) * x + Math.sin(aside) * forward[k]));
+    },
+    // Parts that are not shown: those that the user hid, and the state before or after a change that is not looked at.
+    hiddenParts({ hiddenParts, showing }) {
+      if (!data.change || !['before', 'after'].includes(showing)) return hiddenParts;
+      const isOther = (part) => part < data.change.part !== (showing === 'before');
+      return new Set([...hiddenParts, ...data.parts.keys()].filter((part) => hiddenParts.has(part) || isOther(part)));
+    },
+    // Contacts that are painted in a frame: before and after a change faults alone, or the one that was gone to and faults that
+    // are left.
+    painted({ frame, contact, showing, hiddenParts }) {
+      const hidden = this.hiddenParts({ hiddenParts, showing });
+      const isAsked = ({ key, kind, parts }) => key === contact || (isFault({ kind }) && (contact === null || parts[0] >= data.change.part));
+      return this.contacts.now(frame).filter((other) => !other.parts.every((part) => hidden.has(part)) && (!data.change || isAsked(other)));
     },
     clipAt: (frame) => Math.max(clips.findLastIndex(({ first }) => first <= frame), 0),
     time: (frame) => times[frame] ?? frame / (frames?.fps || 30),

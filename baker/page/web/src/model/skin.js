@@ -15,7 +15,7 @@ export class Skin {
     this.motion = motion;
     this.frame = -1;
     const { positions, triangles, partOf, sphereOf, layerOf, influences, joints, weights } = mesh;
-    this.isLaidOver = false;
+    this.apart = [0, 0, 0]; // from before to after a change
     const isBefore = (triangle) => mesh.changed !== null && triangle < mesh.changed.triangle;
     const before = []; // of each vertex
     const ownPath = new Uint8Array(positions.length / 3).fill(motion.vertices ? 1 : 0);
@@ -33,7 +33,8 @@ export class Skin {
     for (let corner = 0; corner < triangles.length; ++corner) {
       const v = triangles[corner];
       if (placeOf[v] < 0) {
-        placeOf[v] = sameAs(places, `${positions[3 * v]},${positions[3 * v + 1]},${positions[3 * v + 2]}`);
+        const who = isBefore(Math.floor(corner / 3)) ? 'before ' : '';
+        placeOf[v] = sameAs(places, `${who}${positions[3 * v]},${positions[3 * v + 1]},${positions[3 * v + 2]}`);
         const from = influences * v;
         const to = from + influences;
         const skin = influences > 0 ? `${joints.subarray(from, to)};${weights.subarray(from, to)}` : '';
@@ -63,23 +64,39 @@ export class Skin {
       part: Math.floor(key / 65536) % 256,
       material: look?.materials[key % 65536] ?? null,
     }));
+    this.changedTo = mesh.changed && this.findChanged();
     this.positions = new Float32Array(3 * source.length);
     this.normals = new Float32Array(3 * source.length);
     this.placeNormals = new Float32Array(3 * places.size);
     this.morphed = motion.morphs.length > 0 ? Float32Array.from(positions) : positions;
   }
 
-  // Lays before and after a change over each other, in the middle between them.
-  layOver(isLaidOver) {
-    if (this.isLaidOver !== isLaidOver) this.frame = -1;
-    this.isLaidOver = isLaidOver;
+  // For each vertex before a change: the same vertex after it. -1: the vertex belongs to the state after.
+  findChanged() {
+    const count = this.mesh.positions.length / 6;
+    const after = new Map();
+    this.source.forEach((v, r) => v >= count && after.set(v - count, r));
+    return Int32Array.from(this.source, (v) => (v < count ? (after.get(v) ?? -1) : -1));
+  }
+
+  // How far a change has moved the vertex whose place begins at `i`; 0 where it is one after.
+  moved(i) {
+    const p = this.positions;
+    const j = 3 * this.changedTo[i / 3];
+    return j < 0 ? 0 : Math.hypot(p[i] - p[j], p[i + 1] - p[j + 1], p[i + 2] - p[j + 2]);
+  }
+
+  // Moves before and after a change apart by `step`, half of it each. They lie over each other where it is 0.
+  moveApart(step) {
+    if (step.every((x, k) => x === this.apart[k])) return;
+    this.apart = step;
+    this.frame = -1;
   }
 
   // How far that moves a triangle.
   shiftOf(t) {
-    if (!this.isLaidOver) return [0, 0, 0];
-    const { triangle, step } = this.mesh.changed;
-    return step.map((x) => (t < triangle ? x : -x) / 2);
+    if (!this.mesh.changed) return [0, 0, 0];
+    return this.apart.map((x) => (t < this.mesh.changed.triangle ? -x : x) / 2);
   }
 
   shift() {
@@ -104,7 +121,7 @@ export class Skin {
       if (blends) this.blend(bones.subarray(frame * 12 * boneCount));
       else this.take(this.morphed);
     }
-    if (this.isLaidOver) this.shift();
+    if (this.apart.some((x) => x !== 0)) this.shift();
     this.computeNormals();
     return true;
   }

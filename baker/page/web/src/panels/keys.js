@@ -22,6 +22,11 @@ export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, dee
     ['L', 'l', 'Layers in colours', flip('layers')],
     ['K', 'k', "Hide the mask's triangles", flip('masked')],
   ];
+  const show = (first, second) => () => store.set({ showing: store.state.showing === first ? second : first });
+  const changeKeys = [
+    ['O', 'o', 'Before and after: beside each other, or the old pose as a ghost', show('ghost', 'beside')],
+    ['C', 'c', 'Before and after in one place: the old pose, or the new one', show('before', 'after')],
+  ];
   const keys = [
     ['Space', ' ', 'Play or pause', flip('playing')],
     ['←', 'ArrowLeft', 'Previous frame', () => timeline.step(-1)],
@@ -29,7 +34,7 @@ export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, dee
     ['Home', 'Home', 'First frame', () => timeline.step(-Infinity)],
     ['End', 'End', 'Last frame', () => timeline.step(Infinity)],
     ...(hasMask ? [] : [['D', 'd', 'Deepest frame of the clip', deepest]]),
-    ...(hasChange ? [['O', 'o', 'Before and after: beside each other, or the old pose as a ghost', flip('over')]] : []),
+    ...(hasChange ? changeKeys : []),
     ...(hasResponse ? [['O', 'o', 'The pose as animated, as a ghost', flip('ghost')]] : []),
     ['1', '1', 'View from the front', () => stage?.view('front')],
     ['2', '2', 'View from the side', () => stage?.view('side')],
@@ -47,9 +52,9 @@ export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, dee
     ...(hasMethod ? methodKeys : []),
     ...listed.map(([label, what]) => [label, null, what]),
     ['T', 't', 'Light or dark', toggleTheme],
-    ['Esc', 'Escape', 'Let go of the contact, sphere or joint', () => store.set({ pinned: null, pointed: null, contact: null, alarm: null, joint: null })],
+    ['Esc', 'Escape', 'Let go of the contact, sphere or joint', () => store.set({ pinned: null, pointed: null, contact: null, alarm: null, joint: null, loop: null })],
     ['?', '?', 'This list', () => help.showModal()],
-  ];
+  ].filter(([label, key]) => key === null || !listed.some(([other]) => other === label));
   help.querySelector('tbody').append(
     ...keys.map(([label, , what]) => h('tr', {}, h('th', { scope: 'row' }, h('kbd', {}, label)), h('td', {}, what))),
   );

@@ -1,3 +1,5 @@
+import { h } from '../base/dom.js';
+
 // The results' tabs. Tabs of the paper's method are shown only while the method is.
 export function bindTabs(store) {
   const tabs = [...document.querySelectorAll('[role=tab]')];
@@ -25,4 +27,17 @@ export function bindTabs(store) {
     const current = tabs.find((tab) => tab.getAttribute('aria-selected') === 'true');
     if (!method && current.classList.contains('method')) choose(tabs[0]);
   });
+}
+
+// Puts a tab before all others, which shows a clip's events or the like.
+export function addTab(name) {
+  const tabs = document.querySelector('[role=tablist]');
+  const tab = h('button', { type: 'button', role: 'tab', id: 'tab-events', 'aria-controls': 'events', 'aria-selected': 'true' }, name);
+  const panel = h('div', { role: 'tabpanel', id: 'events', 'aria-labelledby': 'tab-events' });
+  for (const other of tabs.children) Object.assign(other, { tabIndex: -1 }).setAttribute('aria-selected', false);
+  tabs.prepend(tab);
+  tabs.after(panel);
+  document.getElementById('contacts').hidden = true;
+  document.getElementById('tab-contacts').textContent = 'This frame';
+  return panel;
 }

@@ -3,12 +3,13 @@ import { isFault } from '../model/contacts.js';
 import { plural, withoutCommonStart } from '../base/format.js';
 import { CONTACT, FALSE_ALARM } from '../base/palette.js';
 
-// Play, step, scrub. A frame with a fault has a bar, as high as it is deep; one in which the skin only folds or touches has a
+// Play, step, scrub. A frame with a fault has a bar, as high as it is deep, and paler where a change has cured it; one in which the skin only folds or touches has a
 // tick. With spheres shown, a frame with false alarms has a mark below. Clips begin at a line with their name; frames are numbered in their clip.
 
 const INSET = 8; // half the slider's thumb: where its first and last value are
 const BASE = 15; // pixels for the numbers
 const TOP = 14; // and for the names of clips
+const CURED = 0.35; // opacity of a bar: the depth before a change
 
 function drawNumbers(context, { model, x, base, height, perFrame, inRange }) {
   const step = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000].find((s) => s * perFrame >= 36) ?? 10000;
@@ -66,7 +67,12 @@ function drawBars(canvas, model, state) {
     context.fillStyle = css('--hover');
     context.fillRect(x(clip.first), 0, Math.max((clip.count - 1) * perFrame, 2), height - BASE);
   }
+  if (state.loop) {
+    context.fillStyle = css('--hover');
+    context.fillRect(x(state.loop.first), 0, Math.max((state.loop.count - 1) * perFrame, 2), height - BASE);
+  }
   const depths = Array.from({ length: model.frameCount }, (_, frame) => model.contacts.depth(frame));
+  const isLeft = ({ parts }) => !model.change || parts[0] >= model.change.part;
   const most = Math.max(1, ...depths.slice(from, to + 1));
   const base = height - BASE;
   const top = model.clips.length > 1 ? TOP : 4;
@@ -76,9 +82,13 @@ function drawBars(canvas, model, state) {
   const bar = Math.max(1, Math.min(14, perFrame * 0.7));
   depths.forEach((depth, frame) => {
     if (frame < from || frame > to || model.contacts.of(frame).length === 0) return;
+    const high = (depth) => (depth > 0 ? 3 + (depth / most) * (base - top - 3) : 2);
+    const left = model.contacts.depth(frame, isLeft);
     context.fillStyle = depth > 0 ? CONTACT : css('--muted');
-    const high = depth > 0 ? 3 + (depth / most) * (base - top - 3) : 2;
-    context.fillRect(x(frame) - bar / 2, base - high, bar, high);
+    context.globalAlpha = depth > left ? CURED : 1;
+    context.fillRect(x(frame) - bar / 2, base - high(depth), bar, high(depth));
+    context.globalAlpha = 1;
+    if (depth > left && left > 0) context.fillRect(x(frame) - bar / 2, base - high(left), bar, high(left));
   });
   if (state.spheres) {
     context.fillStyle = FALSE_ALARM;
@@ -90,6 +100,13 @@ function drawBars(canvas, model, state) {
   context.textBaseline = 'bottom';
   drawNumbers(context, { model, x, base, height, perFrame, inRange });
   drawClips(context, { model, x, base, inRange });
+}
+
+// "2 faults → 0": before and after a change.
+function changeText(contacts, { part }) {
+  const before = contacts.filter((contact) => isFault(contact) && contact.parts[0] < part).length;
+  const after = contacts.filter((contact) => isFault(contact) && contact.parts[0] >= part).length;
+  return before + after === 0 ? 'no fault' : `${plural(before, 'fault')} → ${after}`;
 }
 
 export function fillTimeline(panel, store, model) {
@@ -118,9 +135,8 @@ export function fillTimeline(panel, store, model) {
   store.watch(['frame', 'pose'], ({ frame }) => {
     const clip = model.clips[model.clipAt(frame)];
     const contacts = model.contacts.now(frame);
-    const touching = contacts.length;
     const number = model.number(frame);
-    const text = model.mask ? '' : touching > 0 ? plural(touching, 'contact') : 'no contact';
+    const text = model.mask ? '' : model.change ? changeText(contacts, model.change) : contacts.length > 0 ? plural(contacts.length, 'contact') : 'no contact';
     input.setAttribute('aria-valuetext', [clip.name, `frame ${number}`, text].filter(Boolean).join(', '));
     readout.replaceChildren(
       last === 0 ? h('b', {}, 'One frame') : h('span', {}, 'frame ', h('b', {}, `${number}`), ` / ${clip.own_count - 1}`),
@@ -130,7 +146,7 @@ export function fillTimeline(panel, store, model) {
   });
   const draw = () => drawBars(bars, model, store.state);
   let clip = -1;
-  store.watch(['theme', 'spheres', 'radius', 'oneClip'], draw);
+  store.watch(['theme', 'spheres', 'radius', 'oneClip', 'loop'], draw);
   store.watch(['frame', 'oneClip'], (state) => {
     zoom.textContent = state.oneClip ? 'all clips' : 'this clip';
     zoom.title = state.oneClip ? 'All clips on the timeline' : 'Only the clip that is shown on the timeline';

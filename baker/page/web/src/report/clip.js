@@ -4,6 +4,7 @@ import './clip.css';
 import { h } from '../base/dom.js';
 import { readModel } from '../model/model.js';
 import { decodePictures } from '../model/pictures.js';
+import { addTab } from '../panels/tabs.js';
 import { start } from '../viewer.js';
 import { eventKeys, fillEvents } from './events_panel.js';
 import { fillHeat } from './heat_panel.js';
@@ -22,17 +23,9 @@ const load = (file) =>
 const say = (text) =>
   document.body.replaceChildren(h('p', { class: 'template' }, text, ' ', h('a', { href: 'index.html' }, 'To the library')));
 
-function addTab(name) {
-  const tabs = document.querySelector('[role=tablist]');
-  const tab = h('button', { type: 'button', role: 'tab', id: 'tab-events', 'aria-controls': 'events', 'aria-selected': 'true' }, name);
-  const panel = h('div', { role: 'tabpanel', id: 'events', 'aria-labelledby': 'tab-events' });
-  for (const other of tabs.children) Object.assign(other, { tabIndex: -1 }).setAttribute('aria-selected', false);
-  tabs.prepend(tab);
-  tabs.after(panel);
-  document.getElementById('contacts').hidden = true;
-  document.getElementById('tab-contacts').textContent = 'This frame';
+function addReportTab(name) {
   document.getElementById('title').before(h('a', { href: 'index.html', class: 'back', title: 'All clips of the library' }, '← Library'));
-  return panel;
+  return addTab(name);
 }
 
 // All that a character's clips do to its skin, on the character at rest.
@@ -41,7 +34,7 @@ async function showCharacter(row, { rows, fits }) {
   const { character, heat } = spherechain;
   const model = readModel({ ...character, title: row.character, radius: 'detect', report: null, clips: [{ name: 'all clips', first: 0, count: 1, own_count: 1 }] });
   await decodePictures(model);
-  const panel = addTab('Heat');
+  const panel = addReportTab('Heat');
   document.getElementById('tab-contacts').remove();
   document.body.classList.add('heat');
   const viewer = start(model);
@@ -68,7 +61,7 @@ async function main() {
     clips: [{ name: row.clip, first: 0, count: clip.frames.count, own_count: row.frames }],
   });
   await decodePictures(model);
-  const panel = addTab('Events');
+  const panel = addReportTab('Events');
   const viewer = start(model, eventKeys);
   document.title = `${row.character} ${row.clip} · spherechain`;
   fillEvents(panel, { rows, row, fit: fits[row.body], model, pokes: clip.pokes, ...viewer });

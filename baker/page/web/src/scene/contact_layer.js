@@ -82,7 +82,7 @@ export class ContactLayer {
     this.group = new THREE.Group().add(this.hidden, mesh(1, 6, {}), mesh(0.9, 7, { wireframe: true }));
     this.arrows = new THREE.Group();
     this.group.add(this.arrows);
-    this.probe = mesh(1, 6, { fragmentShader: probeShader, uniforms: { winding: { value: 1 } }, transparent: false });
+    this.probe = mesh(1, 6, { fragmentShader: probeShader, uniforms: { winding: { value: 1 } } });
   }
 
   // For so many triangles.

@@ -8,15 +8,18 @@ const MOVED = 0.01; // so far, as a share of the height, and its ghost is seen i
 function dressSkin(model, state, skinLayer) {
   skinLayer.group.visible = state.skin;
   skinLayer.setOpacity(state.skinOpacity);
-  skinLayer.skin.layOver(state.over);
+  skinLayer.skin.moveApart(model.apart(state));
   if (!state.editing) skinLayer.pose(state.frame); // else it stands at rest
   const plain = state.regions || state.patches || state.layers || !state.look;
   skinLayer.uniforms.pictured.value = plain ? 0 : 1;
+  const hidden = model.hiddenParts(state);
+  const isGhost = model.change && state.showing === 'ghost';
+  if (model.change) skinLayer.show((i) => (isGhost ? skinLayer.skin.moved(i) / (MOVED * model.height) : 0));
   skinLayer.skin.zones.forEach(({ layer, sphere, part, material, isBefore }, zone) => {
     const region = model.spheres[sphere]?.region ?? -1;
     const base = state.layers ? LAYERS[layer] : state.regions || state.patches ? regionColour(region) : (!plain && material?.colour) || CLAY;
-    if (state.hiddenParts.has(part) || (state.masked && layer === HIDDEN_LAYER)) skinLayer.setLook(zone, base, looks.HIDDEN);
-    else if (state.over && isBefore) skinLayer.setLook(zone, GHOST, looks.GHOST);
+    if (hidden.has(part) || (state.masked && layer === HIDDEN_LAYER)) skinLayer.setLook(zone, base, looks.HIDDEN);
+    else if (isGhost && isBefore) skinLayer.setLook(zone, GHOST, looks.GHOST);
     else if (state.method && sphere === state.pointed) skinLayer.setLook(zone, POINTED, looks.POINTED);
     else skinLayer.setLook(zone, state.patches ? tone(base, sphere) : base, looks.PLAIN);
   });
@@ -65,5 +68,5 @@ export function dress(model, state, { skinLayer, ghostLayer, sphereLayer, contac
   }
   contactLayer.group.visible = state.paint;
   contactLayer.hidden.visible = state.hiddenContacts;
-  contactLayer.fill(model.contacts.now(state.frame), state.contact, state.hiddenParts);
+  contactLayer.fill(model.painted(state), state.contact, model.hiddenParts(state));
 }

@@ -29,16 +29,6 @@ export function createFraming(model) {
   }
   if (rest.isEmpty()) rest.set(new THREE.Vector3(-0.5, 0, -0.5), new THREE.Vector3(0.5, 1, 0.5));
   const { boxes } = model.motion;
-  // Overlaid states are framed at the middle between before and after.
-  const step = new THREE.Vector3(...(model.change?.step ?? [0, 0, 0]));
-  const half = step.applyMatrix3(new THREE.Matrix3().setFromMatrix4(toWorld)).divideScalar(2);
-  const inTheMiddle = (box) => {
-    for (const axis of ['x', 'y', 'z']) {
-      box.min[axis] += Math.abs(half[axis]);
-      box.max[axis] -= Math.abs(half[axis]);
-    }
-    return box;
-  };
 
   const offset = (frame, follow) => {
     const [x, z] = follow ? travel(model, home, frame) : [0, 0];
@@ -48,12 +38,11 @@ export function createFraming(model) {
     toWorld,
     offset,
     // The box around each of a clip's frames.
-    boxes({ first, count }, { follow, over, editing }) {
+    boxes({ first, count }, { follow, editing }) {
       if (boxes.length === 0 || editing) return [rest];
       return Array.from({ length: count }, (_, i) => {
         const [low, high] = [0, 3].map((k) => new THREE.Vector3().fromArray(boxes, 6 * (first + i) + k));
-        const box = new THREE.Box3(low, high).translate(offset(first + i, follow));
-        return over ? inTheMiddle(box) : box;
+        return new THREE.Box3(low, high).translate(offset(first + i, follow));
       });
     },
   };

@@ -127,7 +127,8 @@ function radiusInPixels(model, state, project, id) {
 // Each contact's number in the list, at its triangles.
 function numberContacts(names, { model, skin, state, project }) {
   if (!state.paint) return;
-  for (const [i, { key, triangles }] of model.contacts.now(state.frame).entries()) {
+  const numbers = new Map(model.contacts.now(state.frame).map(({ key }, i) => [key, i + 1]));
+  for (const { key, triangles } of model.painted(state)) {
     if (triangles.every((t) => state.hiddenParts.has(model.mesh.partOf[t]))) continue;
     const [x, y, z, radius] = skin.ballOf(triangles);
     const at = project(x, y, z);
@@ -135,7 +136,7 @@ function numberContacts(names, { model, skin, state, project }) {
     const above = project(x + radius * up[0], y + radius * up[1], z + radius * up[2]);
     const lift = Math.min(Math.hypot(above.x - at.x, above.y - at.y), 12) + 12;
     const paper = state.contact === null || state.contact === key ? CONTACT : '#9a5257';
-    [[0, -lift], [lift, 0], [-lift, 0], [0, lift]].some(([dx, dy]) => names.add(`${i + 1}`, at.x + dx, at.y + dy, { ink: '#fff', paper, bold: true }));
+    [[0, -lift], [lift, 0], [-lift, 0], [0, lift]].some(([dx, dy]) => names.add(`${numbers.get(key)}`, at.x + dx, at.y + dy, { ink: '#fff', paper, bold: true }));
   }
 }
 

@@ -62,10 +62,9 @@ const fragmentShader = `
     float edge = pow(1.0 - dot(n, e), 3.0);
     float alpha = opacity + (1.0 - opacity) * 0.55 * edge * smoothstep(0.0, 0.15, opacity);
     if (look.a > 0.9) alpha = max(alpha, 0.62);
-    if (ghosts > 0.5) alpha = opacity * (0.2 + 0.6 * pow(1.0 - dot(n, e), 2.0));
-    if (ghosts > 1.5) alpha *= painted.a;
+    if (ghosts > 0.5) alpha = painted.a * opacity * (0.2 + 0.6 * pow(1.0 - dot(n, e), 2.0));
     if (alpha < 0.004) discard;
-    gl_FragColor = vec4((ghosts > 1.5 ? colour : colour * (1.0 - painted.a) + painted.rgb) * lightOn(n, e), alpha);
+    gl_FragColor = vec4((ghosts > 0.5 ? colour : colour * (1.0 - painted.a) + painted.rgb) * lightOn(n, e), alpha);
     #include <colorspace_fragment>
   }`;
 
@@ -126,10 +125,8 @@ export class SkinLayer {
       return Object.assign(new THREE.Mesh(geometry, material), { renderOrder: order });
     };
     this.depth = mesh(3, 0, { colorWrite: false });
-    // Behind the skin where it is in the same place.
-    const ghost = () => mesh(8, isGhost ? 2 : 1, { depthTest: !isGhost, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 40 });
     this.surface = mesh(4, 0, {});
-    this.group = new THREE.Group().add(this.depth, this.surface, ...(isGhost || skin.mesh.changed ? [ghost()] : []));
+    this.group = new THREE.Group().add(this.depth, this.surface, ...(isGhost || skin.mesh.changed ? [mesh(8, 1, { depthTest: false, depthWrite: false })] : []));
     for (const mesh of this.group.children) mesh.frustumCulled = false;
   }
 

@@ -60,6 +60,17 @@ export function createStage(canvas, model, store, { skinLayer, ghostLayer, spher
     character.matrix.makeTranslation(offset).multiply(framing.toWorld);
     floor.uniforms.slide.value.set(-offset.x, -offset.z);
   }
+  // Half of the way between before and after a change, where they stand beside each other.
+  const halfApart = () => (model.change && store.state.showing === 'beside' ? model.change.distance / model.height / 2 : 0);
+  const rightOf = (back) => new THREE.Vector3(0, 1, 0).cross(back).normalize();
+  // They stay beside each other, whichever way the camera looks.
+  function standBeside() {
+    if (halfApart() === 0) return;
+    const right = rightOf(camera.position.clone().sub(controls.target));
+    const aside = Math.atan2(right.z, right.x);
+    if (Math.abs(aside - store.state.aside) > 1e-3) store.set({ aside });
+  }
+
   const toWorld = () => (place(), character.matrix);
   const fromWorld = () => toWorld().clone().invert();
 
@@ -73,6 +84,7 @@ export function createStage(canvas, model, store, { skinLayer, ghostLayer, spher
       if (t === 1) flight = null;
     }
     if (controls.update() || flight) invalidate();
+    standBeside();
     place();
     camera.updateMatrixWorld();
     beforeDraw(camera.position.clone().applyMatrix4(fromWorld()));
@@ -116,7 +128,7 @@ export function createStage(canvas, model, store, { skinLayer, ghostLayer, spher
   function eyeFor(direction) {
     const target = bounds.getCenter(new THREE.Vector3());
     const back = direction.clone().normalize();
-    const right = new THREE.Vector3(0, 1, 0).cross(back).normalize();
+    const right = rightOf(back);
     const up = back.clone().cross(right);
     const vertical = TAN * 0.92;
     const horizontal = vertical * camera.aspect;
@@ -125,7 +137,7 @@ export function createStage(canvas, model, store, { skinLayer, ghostLayer, spher
     for (const { min, max } of boxes) {
       for (let corner = 0; corner < 8; ++corner) {
         p.set(corner & 1 ? max.x : min.x, corner & 2 ? max.y : min.y, corner & 4 ? max.z : min.z).sub(target);
-        const size = Math.max(Math.abs(p.dot(right)) / horizontal, Math.abs(p.dot(up)) / vertical);
+        const size = Math.max((Math.abs(p.dot(right)) + halfApart()) / horizontal, Math.abs(p.dot(up)) / vertical);
         distance = Math.max(distance, p.dot(back) + size);
       }
     }
@@ -197,8 +209,8 @@ export function createStage(canvas, model, store, { skinLayer, ghostLayer, spher
   resize();
   let boundsKey = '';
   let standing = '';
-  store.watch(['frame', 'follow', 'over', 'editing'], ({ frame, follow, over, editing }) => {
-    const key = `${model.clipAt(frame)} ${follow} ${over} ${editing}`;
+  store.watch(['frame', 'follow', 'showing', 'editing'], ({ frame, follow, editing }) => {
+    const key = `${model.clipAt(frame)} ${follow} ${halfApart()} ${editing}`;
     if (key === boundsKey) return;
     const isElsewhere = boundsKey !== '' && boundsKey.endsWith('true') !== editing; // the rest pose may stand where no frame does
     boundsKey = key;
@@ -238,12 +250,15 @@ export function createStage(canvas, model, store, { skinLayer, ghostLayer, spher
     },
 
     // Looks at a ball of source units from where the outside of the chosen contact's triangles is seen best, or as `known` says.
-    flyToContact(ball, known) {
+    // `side`: it is left (-1) or right (1) of where before and after a change meet. `room`: how many times as far it looks from.
+    flyToContact(ball, known, side = 0, room = 1) {
       framed = null;
       const center = new THREE.Vector3(...(known?.target ?? ball)).applyMatrix4(toWorld());
-      const distance = Math.max((1.5 * ball[3]) / model.height / TAN, (known ? 0.74 : 0.62) * unit);
+      const near = Math.max((1.5 * ball[3]) / model.height / TAN, (known ? 0.74 : 0.62) * unit);
+      const distance = room * near;
       const back = camera.position.clone().sub(controls.target).normalize();
-      const best = known ? new THREE.Vector3(...known.back).transformDirection(toWorld()) : findView(toWorld(), center, distance, back, inSphere);
+      const best = known ? new THREE.Vector3(...known.back).transformDirection(toWorld()) : findView(toWorld(), center, near, back, inSphere);
+      if (best) center.addScaledVector(rightOf(back), -side * halfApart()).addScaledVector(rightOf(best), side * halfApart());
       go(center, best ? center.clone().addScaledVector(best, distance) : outside(center, back, distance));
     },
 
