@@ -2,12 +2,14 @@
 // spherechain_bench_response [--each] [--fps N] [--seconds S] ASSET SOURCE [ASSET SOURCE ...]: characters as animated,
 // by sc_respond and by capsules, in one run. All are measured by penetrations in full, as `play --respond` does.
 // `--each` prints every frame, too.
+// With --facing, --beside or --passing METRES: two characters that stand so, pair by pair. Each stays out of the other.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -16,6 +18,7 @@
 #include "baker/play/target.h"
 #include "capsule_response.h"
 #include "table.h"
+#include "two_characters.h"
 
 using namespace spherechain;
 
@@ -82,6 +85,9 @@ std::string text_of(const baker::ArmPose& before, const baker::ArmPose& after, d
 struct Choice {
   double fps = 30, seconds = 1e9;  // of the animation, counted through all clips
   bool each = false;
+  std::optional<bench::Stance> stance;  // of two characters
+  double metres = 0;                    // between them
+  bench::Seen seen = bench::Seen::kLastFrame;
 };
 
 Row run(const char* asset, const char* source, const Choice& choice) {
@@ -121,6 +127,47 @@ Row run(const char* asset, const char* source, const Choice& choice) {
   return {name, by_response.measures(), by_capsules.measures()};
 }
 
+std::optional<bench::Stance> stance_of(const std::string& word) {
+  if (word == "--facing") return bench::Stance::kFacing;
+  if (word == "--beside") return bench::Stance::kBeside;
+  return word == "--passing" ? std::optional(bench::Stance::kPassing) : std::nullopt;
+}
+
+// Two characters, measured together: an arm's faults with the other character, wrists and elbows of both.
+void run_two(const char* const (&files)[4], const Choice& choice) {
+  const baker::FrameChoice frames{0, choice.fps};
+  const baker::AnimatedAsset first(files[0], files[1], baker::MotionChoice(), frames),
+      second(files[2], files[3], baker::MotionChoice(), frames);
+  constexpr double kMetres = kHuman / 1000;
+  bench::TwoCharacters two(first, second, baker::choose_target("auto"), *choice.stance, choice.metres, choice.seen);
+  baker::ResponseTally both(kMetres),
+      alone[] = {baker::ResponseTally(first.frame().height), baker::ResponseTally(second.frame().height)};
+  int before = 0, after = 0;
+  double deepest = 0;
+  for (int f = 0; f < two.frame_count() && f < choice.seconds * choice.fps; ++f) {
+    const bench::TwoCharacters::Frame frame = two.frame(f);
+    both.add(frame.before, frame.after, frame.us, frame.starts_clip);
+    for (std::size_t i = 0; i < 2; ++i) {
+      alone[i].add(frame.alone_before[i], frame.alone_after[i], 0, frame.starts_clip);
+    }
+    before += frame.is_faulty_before ? 1 : 0;
+    after += frame.is_faulty_after ? 1 : 0;
+    deepest = std::max(deepest, depth_of(frame.after, kMetres));
+    if (choice.each) {
+      fmt::print("frame {}: fault {:5.1f} | response: {}\n", f, depth_of(frame.before, kMetres),
+                 text_of(frame.before, frame.after, kMetres));
+    }
+  }
+  const baker::ResponseMeasures m = both.measures(), one = alone[0].measures(), two_alone = alone[1].measures();
+  fmt::print(
+      "| {}, {} | {} | {} / {} | {} / {} | {} / {}, {} / {} | {} | {:.2f} | {:.2f} | {:.0f} | {} | {:.0f} | {:.0f} |\n",
+      std::filesystem::path(files[1]).stem().string(), std::filesystem::path(files[3]).stem().string(), m.frames,
+      m.faulty_before, m.faulty_after, before, after, one.faulty_before, one.faulty_after, two_alone.faulty_before,
+      two_alone.faulty_after, m.new_faults, m.wrist_acceleration, m.elbow_acceleration, kHuman * m.largest_jump,
+      m.flickers, deepest, m.us_mean / 2);
+  std::fflush(stdout);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -130,15 +177,25 @@ int main(int argc, char** argv) try {
     const std::string word = argv[i];
     if ((word == "--fps" || word == "--seconds") && i + 1 < argc) {
       (word == "--fps" ? choice.fps : choice.seconds) = std::stod(argv[++i]);
+    } else if (const auto stance = stance_of(word); stance && i + 1 < argc) {
+      choice.stance = stance;
+      choice.metres = std::stod(argv[++i]);
+    } else if (word == "--seen" && i + 1 < argc) {
+      choice.seen = static_cast<bench::Seen>(std::stoi(argv[++i]));
     } else if (word == "--each") {
       choice.each = true;
     } else {
       files.push_back(argv[i]);
     }
   }
-  if (files.empty() || files.size() % 2 != 0) throw std::runtime_error("pass pairs of ASSET SOURCE");
+  const std::size_t at_once = choice.stance ? 4 : 2;
+  if (files.empty() || files.size() % at_once != 0) throw std::runtime_error("pass pairs of ASSET SOURCE");
   fmt::print("{}\n\n", bench::machine());
   std::fflush(stdout);
+  for (std::size_t i = 0; choice.stance && i < files.size(); i += 4) {
+    run_two({files[i], files[i + 1], files[i + 2], files[i + 3]}, choice);
+  }
+  if (choice.stance) return 0;
   std::vector<Row> rows;
   for (std::size_t i = 0; i < files.size(); i += 2) rows.push_back(run(files[i], files[i + 1], choice));
   print(rows);
