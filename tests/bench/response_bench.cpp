@@ -2,7 +2,8 @@
 // spherechain_bench_response [--each] [--fps N] [--seconds S] ASSET SOURCE [ASSET SOURCE ...]: characters as animated,
 // by sc_respond and by capsules, in one run. All are measured by penetrations in full, as `play --respond` does.
 // `--each` prints every frame, too.
-// With --facing, --beside or --passing METRES: two characters that stand so, pair by pair. Each stays out of the other.
+// With --facing, --beside or --passing METRES ASSET SOURCE ASSET SOURCE: two characters that stand so, and stay out of
+// each other. Any number of these.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -85,9 +86,6 @@ std::string text_of(const baker::ArmPose& before, const baker::ArmPose& after, d
 struct Choice {
   double fps = 30, seconds = 1e9;  // of the animation, counted through all clips
   bool each = false;
-  std::optional<bench::Stance> stance;  // of two characters
-  double metres = 0;                    // between them
-  bench::Seen seen = bench::Seen::kLastFrame;
 };
 
 Row run(const char* asset, const char* source, const Choice& choice) {
@@ -133,17 +131,33 @@ std::optional<bench::Stance> stance_of(const std::string& word) {
   return word == "--passing" ? std::optional(bench::Stance::kPassing) : std::nullopt;
 }
 
-// Two characters, measured together: an arm's faults with the other character, wrists and elbows of both.
-void run_two(const char* const (&files)[4], const Choice& choice) {
+// Two characters of four files.
+struct Two {
+  bench::Stance stance;
+  const char *name, *metres;  // as it was asked for
+  const char* const* files;
+};
+
+void print_heads_of_two() {
+  fmt::print(
+      "| | frames | arm in the other | anything in the other | alone, first | alone, second | new | wrists | elbows | "
+      "jump, "
+      "mm | flickers | left, mm | us a character |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+}
+
+// Both are measured together: an arm's faults with the other character, wrists and elbows of both.
+void run(const Two& asked, const Choice& choice) {
   const baker::FrameChoice frames{0, choice.fps};
+  const char* const* const files = asked.files;
   const baker::AnimatedAsset first(files[0], files[1], baker::MotionChoice(), frames),
       second(files[2], files[3], baker::MotionChoice(), frames);
   constexpr double kMetres = kHuman / 1000;
-  bench::TwoCharacters two(first, second, baker::choose_target("auto"), *choice.stance, choice.metres, choice.seen);
+  bench::TwoCharacters two(first, second, baker::choose_target("auto"), asked.stance, std::stod(asked.metres));
   baker::ResponseTally both(kMetres),
       alone[] = {baker::ResponseTally(first.frame().height), baker::ResponseTally(second.frame().height)};
   int before = 0, after = 0;
-  double deepest = 0;
+  double left = 0;
   for (int f = 0; f < two.frame_count() && f < choice.seconds * choice.fps; ++f) {
     const bench::TwoCharacters::Frame frame = two.frame(f);
     both.add(frame.before, frame.after, frame.us, frame.starts_clip);
@@ -152,19 +166,20 @@ void run_two(const char* const (&files)[4], const Choice& choice) {
     }
     before += frame.is_faulty_before ? 1 : 0;
     after += frame.is_faulty_after ? 1 : 0;
-    deepest = std::max(deepest, depth_of(frame.after, kMetres));
+    left = std::max(left, depth_of(frame.after, kMetres));
     if (choice.each) {
       fmt::print("frame {}: fault {:5.1f} | response: {}\n", f, depth_of(frame.before, kMetres),
                  text_of(frame.before, frame.after, kMetres));
     }
   }
-  const baker::ResponseMeasures m = both.measures(), one = alone[0].measures(), two_alone = alone[1].measures();
+  const baker::ResponseMeasures m = both.measures(), own[] = {alone[0].measures(), alone[1].measures()};
+  const auto name = [](const char* source) { return std::filesystem::path(source).stem().string(); };
   fmt::print(
-      "| {}, {} | {} | {} / {} | {} / {} | {} / {}, {} / {} | {} | {:.2f} | {:.2f} | {:.0f} | {} | {:.0f} | {:.0f} |\n",
-      std::filesystem::path(files[1]).stem().string(), std::filesystem::path(files[3]).stem().string(), m.frames,
-      m.faulty_before, m.faulty_after, before, after, one.faulty_before, one.faulty_after, two_alone.faulty_before,
-      two_alone.faulty_after, m.new_faults, m.wrist_acceleration, m.elbow_acceleration, kHuman * m.largest_jump,
-      m.flickers, deepest, m.us_mean / 2);
+      "| {} {}: {}, {} | {} | {} / {} | {} / {} | {} / {} | {} / {} | {} | {:.2f} | {:.2f} | {:.0f} | {} | {:.0f} | "
+      "{:.0f} |\n",
+      asked.name, asked.metres, name(files[1]), name(files[3]), m.frames, m.faulty_before, m.faulty_after, before,
+      after, own[0].faulty_before, own[0].faulty_after, own[1].faulty_before, own[1].faulty_after, m.new_faults,
+      m.wrist_acceleration, m.elbow_acceleration, kHuman * m.largest_jump, m.flickers, left, m.us_mean / 2);
   std::fflush(stdout);
 }
 
@@ -172,30 +187,27 @@ void run_two(const char* const (&files)[4], const Choice& choice) {
 
 int main(int argc, char** argv) try {
   std::vector<const char*> files;
+  std::vector<Two> twos;
   Choice choice;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if ((word == "--fps" || word == "--seconds") && i + 1 < argc) {
       (word == "--fps" ? choice.fps : choice.seconds) = std::stod(argv[++i]);
-    } else if (const auto stance = stance_of(word); stance && i + 1 < argc) {
-      choice.stance = stance;
-      choice.metres = std::stod(argv[++i]);
-    } else if (word == "--seen" && i + 1 < argc) {
-      choice.seen = static_cast<bench::Seen>(std::stoi(argv[++i]));
+    } else if (const auto stance = stance_of(word); stance && i + 5 < argc) {
+      twos.push_back({*stance, argv[i] + 2, argv[i + 1], argv + i + 2});
+      i += 5;
     } else if (word == "--each") {
       choice.each = true;
     } else {
       files.push_back(argv[i]);
     }
   }
-  const std::size_t at_once = choice.stance ? 4 : 2;
-  if (files.empty() || files.size() % at_once != 0) throw std::runtime_error("pass pairs of ASSET SOURCE");
+  if (files.empty() == twos.empty() || files.size() % 2 != 0) throw std::runtime_error("pass pairs of ASSET SOURCE");
   fmt::print("{}\n\n", bench::machine());
   std::fflush(stdout);
-  for (std::size_t i = 0; choice.stance && i < files.size(); i += 4) {
-    run_two({files[i], files[i + 1], files[i + 2], files[i + 3]}, choice);
-  }
-  if (choice.stance) return 0;
+  if (!twos.empty()) print_heads_of_two();
+  for (const Two& two : twos) run(two, choice);
+  if (!twos.empty()) return 0;
   std::vector<Row> rows;
   for (std::size_t i = 0; i < files.size(); i += 2) rows.push_back(run(files[i], files[i + 1], choice));
   print(rows);

@@ -3,9 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <numbers>
-#include <stdexcept>
-#include <string>
+#include <string_view>
 
 namespace spherechain::bench {
 
@@ -23,12 +23,6 @@ sc_transform transform_of(const Affine& affine, double scale) {
           {part(scale), part(scale), part(scale)}};
 }
 
-BodyDef meets(const baker::OpenAsset& other) {
-  BodyDef def;
-  def.largest_other = other.model().handle();
-  return def;
-}
-
 }  // namespace
 
 TwoCharacters::Character::Character(const baker::AnimatedAsset& own, const baker::AnimatedAsset& other, Target target,
@@ -38,34 +32,35 @@ TwoCharacters::Character::Character(const baker::AnimatedAsset& own, const baker
       responder(own, target, 0, &other.asset()),
       meter(own, target),
       skin(own.asset(), target, &other.asset()),
-      looker(own.asset().model(), meets(other.asset())),
-      later(first) {}
-
-// Puts the middle of its shoulders in this frame above `where`, and its soles at rest on the floor, y = 0. It looks
-// along z there.
-void TwoCharacters::Character::stand(const Affine& where, int frame) {
-  const baker::BodyFrame body = animated.frame();
-  const double scale = kHeight / body.height;
-  Affine upright = Affine::Identity();
+      later(first) {
+  const baker::BodyFrame body = own.frame();
   upright.linear() << body.left.transpose(), body.up.transpose(), body.forward.transpose();
-  upright = Eigen::Scaling(scale) * upright * Eigen::Translation3d(-body.origin);
-  const Deformation pose = animated.deformation(frame);
-  Vec3 left = upright * shoulder(pose, "left upper arm"), right = upright * shoulder(pose, "right upper arm");
-  left.y() = right.y() = 0;
-  upright = Eigen::Quaterniond::FromTwoVectors(left - right, Vec3::UnitX()) *
-            Eigen::Translation3d(-(left + right) / 2) * upright;
-  to_world = where * upright;
-  place = transform_of(to_world, scale);
+  upright = Eigen::Scaling(kHeight / body.height) * upright * Eigen::Translation3d(-body.origin);
+  const auto [left, right] = shoulders(later);
+  upright = Eigen::Quaterniond::FromTwoVectors(left - right, Vec3::UnitX()) * upright;
 }
 
-Vec3 TwoCharacters::Character::shoulder(const Deformation& pose, std::string_view name) const {
+// Puts the middle of its shoulders above `where`, and its soles at rest on the floor, y = 0.
+void TwoCharacters::Character::stand(const Affine& where, int frame) {
+  const auto [left, right] = shoulders(frame);
+  to_world = where * Eigen::Translation3d(-(left + right) / 2) * upright;
+  place = transform_of(to_world, kHeight / animated.frame().height);
+}
+
+// Both above the floor.
+std::pair<Vec3, Vec3> TwoCharacters::Character::shoulders(int frame) const {
+  const Deformation pose = animated.deformation(frame);
   const baker::OpenAsset& asset = animated.asset();
+  Vec3 left = Vec3::Zero(), right = Vec3::Zero();
   for (std::uint32_t part = 0; part < asset->part_count(); ++part) {
+    const std::string_view name = asset.model().part_name(part);
     const std::int32_t bone = asset.model().part(part).bone;
-    if (asset.model().part_name(part) == name && bone >= 0)
-      return joints.place_of(pose, static_cast<std::size_t>(bone));
+    if (bone < 0 || !name.ends_with(" upper arm")) continue;
+    Vec3& at = name.starts_with("left") ? left : right;
+    at = upright * joints.place_of(pose, static_cast<std::size_t>(bone));
+    at.y() = 0;
   }
-  throw std::runtime_error("no " + std::string(name));
+  return {left, right};
 }
 
 Deformation TwoCharacters::Character::placed(const Deformation& pose) const {
@@ -75,16 +70,19 @@ Deformation TwoCharacters::Character::placed(const Deformation& pose) const {
 }
 
 TwoCharacters::TwoCharacters(const baker::AnimatedAsset& first, const baker::AnimatedAsset& second, Target target,
-                             Stance stance, double metres, Seen seen)
+                             Stance stance, double metres)
     : first_(first, second, target, 0),
       second_(second, first, target, static_cast<int>(kLater * second.fps())),
-      seen_(seen) {
-  Affine where = Affine::Identity();
-  where.translation() = stance == Stance::kFacing ? Vec3(0, 0, metres) : Vec3(metres, 0, 0);
-  if (stance != Stance::kBeside) where.rotate(Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitY()));
-  const int met = stance == Stance::kPassing ? frame_count() / 2 : 0;
-  first_.stand(Affine::Identity(), met);
-  second_.stand(where, met + second_.later);
+      stance_(stance),
+      metres_(metres) {}
+
+// Where the second stands; the first is at the origin and looks along z.
+Affine TwoCharacters::second_at(double seconds) const {
+  Affine out = Affine::Identity();
+  out.translation() = stance_ == Stance::kFacing ? Vec3(0, 0, metres_) : Vec3(metres_, 0, 0);
+  if (stance_ == Stance::kPassing) out.translation().z() = std::sin(std::numbers::pi / 2 * seconds);
+  if (stance_ != Stance::kBeside) out.rotate(Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitY()));
+  return out;
 }
 
 int TwoCharacters::frame_count() const {
@@ -108,22 +106,19 @@ void TwoCharacters::measure(const std::array<Deformation, 2>& poses, baker::ArmP
 
 TwoCharacters::Frame TwoCharacters::frame(int number) {
   Frame out;
+  first_.stand(Affine::Identity(), number);
+  second_.stand(second_at(number / second_.animated.fps()), number + second_.later);
   Character* const both[] = {&first_, &second_};
-  if (seen_ != Seen::kLastFrame || number == 0) {
-    for (Character* one : both) {
-      const Deformation animated = one->placed(one->animated.deformation(number + one->later));
-      const baker::BonePose pose(one->animated.asset(), animated);
-      baker::check_runtime(one->looker.set_pose(pose.pose()));
-    }
-  }
-  const bool is_last = seen_ == Seen::kLastFrame && number > 0;
-  const Body* const met[] = {is_last ? &second_.responder.body() : &second_.looker,
-                             seen_ == Seen::kEach ? &first_.looker : &first_.responder.body()};
+  // As docs/response.md says: bodies are posed as animated first. The second then finds the first as corrected.
+  const Deformation animated = second_.placed(second_.animated.deformation(number + second_.later));
+  const baker::BonePose pose(second_.animated.asset(), animated);
+  baker::check_runtime(second_.responder.body().set_pose(pose.pose()));
   out.us = 0;
   out.starts_clip = false;
   for (std::size_t i = 0; i < 2; ++i) {
     Character& own = *both[i];
-    const baker::Responder::Corrected made = own.responder.correct(number + own.later, &own.place, met[i]);
+    const baker::Responder::Corrected made =
+        own.responder.correct(number + own.later, &own.place, &both[1 - i]->responder.body());
     out.us += made.us;
     out.starts_clip = out.starts_clip || number == 0 || made.starts_clip;
     out.animated[i] = own.placed(made.animated);

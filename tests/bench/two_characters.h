@@ -3,32 +3,25 @@
 #pragma once
 
 #include <array>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "baker/play/responder.h"
 
 namespace spherechain::bench {
 
-// How the second stands to the first. Both are scaled to 1.75 m.
+// Where the second is. Both are scaled to 1.75 m and stay above one spot, as a game's controllers hold them.
 enum class Stance {
-  kFacing,   // before it, and looks at it
+  kFacing,   // before the first, and looks at it
   kBeside,   // at its left
-  kPassing,  // at its left and looks the other way, half-way through the motion
-};
-
-// Which pose of the second the first one stays out of. The second always stays out of the first as corrected.
-enum class Seen {
-  kLastFrame,  // as corrected in the last frame
-  kAnimated,   // as animated in this frame
-  kEach,       // as kAnimated, and the second stays out of the first as animated, too
+  kPassing,  // at its left, looks the other way, and goes forward and backward by 1 m, in four seconds
 };
 
 class TwoCharacters {
  public:
   // `metres`: between the middles of their shoulders. Both animations must outlive it.
   TwoCharacters(const baker::AnimatedAsset& first, const baker::AnimatedAsset& second, Target target, Stance stance,
-                double metres, Seen seen);
+                double metres);
 
   struct Frame {
     std::array<baker::Deformation, 2> animated, corrected;  // in the world
@@ -49,21 +42,24 @@ class TwoCharacters {
     baker::Responder responder;
     baker::ArmMeter meter;
     baker::SkinPlayer skin;
-    Body looker;  // as animated
     int later;    // its first frame
     sc_transform place{};
+    baker::Affine upright = baker::Affine::Identity();  // y up, z forward at first
     baker::Affine to_world;
 
     Character(const baker::AnimatedAsset& own, const baker::AnimatedAsset& other, Target target, int later);
     void stand(const baker::Affine& where, int frame);
-    baker::Vec3 shoulder(const baker::Deformation& pose, std::string_view name) const;
+    std::pair<baker::Vec3, baker::Vec3> shoulders(int frame) const;
     baker::Deformation placed(const baker::Deformation& pose) const;
   };
   // Measures both against each other.
   void measure(const std::array<baker::Deformation, 2>& poses, baker::ArmPose& arms, bool& is_faulty);
 
+  baker::Affine second_at(double seconds) const;
+
   Character first_, second_;
-  Seen seen_;
+  Stance stance_;
+  double metres_;
 };
 
 }  // namespace spherechain::bench
