@@ -13,7 +13,8 @@ using baker::Affine, baker::Deformation, baker::Vec3;
 
 namespace {
 
-constexpr double kHeight = 1.75, kLater = 0.5;  // metres; seconds: else two of a kind would move as one
+constexpr double kHeight = 1.75, kShoulders = 1.4;  // metres
+constexpr double kLater = 0.5;                      // seconds: else two of a kind would move as one
 
 sc_transform transform_of(const Affine& affine, double scale) {
   const Eigen::Quaterniond turn(Eigen::Matrix3d(affine.linear() / scale));
@@ -37,17 +38,18 @@ TwoCharacters::Character::Character(const baker::AnimatedAsset& own, const baker
   upright.linear() << body.left.transpose(), body.up.transpose(), body.forward.transpose();
   upright = Eigen::Scaling(kHeight / body.height) * upright * Eigen::Translation3d(-body.origin);
   const auto [left, right] = shoulders(later);
-  upright = Eigen::Quaterniond::FromTwoVectors(left - right, Vec3::UnitX()) * upright;
+  Vec3 across = left - right;
+  across.y() = 0;
+  upright = Eigen::Quaterniond::FromTwoVectors(across, Vec3::UnitX()) * upright;
 }
 
-// Puts the middle of its shoulders above `where`, and its soles at rest on the floor, y = 0.
+// Puts the middle of its shoulders over `where`.
 void TwoCharacters::Character::stand(const Affine& where, int frame) {
   const auto [left, right] = shoulders(frame);
-  to_world = where * Eigen::Translation3d(-(left + right) / 2) * upright;
+  to_world = where * Eigen::Translation3d(Vec3(0, kShoulders, 0) - (left + right) / 2) * upright;
   place = transform_of(to_world, kHeight / animated.frame().height);
 }
 
-// Both above the floor.
 std::pair<Vec3, Vec3> TwoCharacters::Character::shoulders(int frame) const {
   const Deformation pose = animated.deformation(frame);
   const baker::OpenAsset& asset = animated.asset();
@@ -56,9 +58,7 @@ std::pair<Vec3, Vec3> TwoCharacters::Character::shoulders(int frame) const {
     const std::string_view name = asset.model().part_name(part);
     const std::int32_t bone = asset.model().part(part).bone;
     if (bone < 0 || !name.ends_with(" upper arm")) continue;
-    Vec3& at = name.starts_with("left") ? left : right;
-    at = upright * joints.place_of(pose, static_cast<std::size_t>(bone));
-    at.y() = 0;
+    (name.starts_with("left") ? left : right) = upright * joints.place_of(pose, static_cast<std::size_t>(bone));
   }
   return {left, right};
 }

@@ -10,7 +10,7 @@
 
 namespace spherechain::bench {
 
-// Where the second is. Both are scaled to 1.75 m and stay above one spot, as a game's controllers hold them.
+// Where the second is. Both are scaled to 1.75 m, and the middles of their shoulders are held 1.4 m above their spots.
 enum class Stance {
   kFacing,   // before the first, and looks at it
   kBeside,   // at its left
@@ -42,7 +42,7 @@ class TwoCharacters {
     baker::Responder responder;
     baker::ArmMeter meter;
     baker::SkinPlayer skin;
-    int later;    // its first frame
+    int later;  // its first frame
     sc_transform place{};
     baker::Affine upright = baker::Affine::Identity();  // y up, z forward at first
     baker::Affine to_world;
