@@ -39,6 +39,15 @@ bool is_flicker(const std::vector<double>& shifts) {
 
 }  // namespace
 
+bool is_of_arm(std::string_view part) {
+  return part.ends_with(" upper arm") || part.ends_with(" forearm") || part.ends_with(" hand");
+}
+
+bool is_deep_fault(const Penetration& found) {
+  return is_fault(found.kind) &&
+         static_cast<double>(found.measures.depth) >= kFaultDepth * static_cast<double>(found.measures.height);
+}
+
 ArmMeter::ArmMeter(const AnimatedAsset& animated, Target target)
     : animated_(animated), joints_(animated), skin_(animated.asset(), target) {
   const OpenAsset& asset = animated.asset();
@@ -50,7 +59,7 @@ ArmMeter::ArmMeter(const AnimatedAsset& animated, Target target)
   for (std::uint32_t part = 0; part < asset->part_count(); ++part) {
     const std::string_view name = asset.model().part_name(part);
     const std::int32_t bone = asset.model().part(part).bone;
-    is_arm_[part] = name.ends_with(" upper arm") || name.ends_with(" forearm") || name.ends_with(" hand");
+    is_arm_[part] = is_of_arm(name);
     if (name.ends_with(" hand") && bone >= 0) wrists_.push_back(static_cast<std::size_t>(bone));
     if (name.ends_with(" forearm") && bone >= 0) elbows_.push_back(static_cast<std::size_t>(bone));
   }
@@ -66,10 +75,8 @@ ArmPose ArmMeter::look_at(const Deformation& deformation) {
   skin_.set_pose(pose.pose());
   ArmPose out;
   for (const Penetration& found : skin_.measure_as_games()) {
-    const bool is_of_arm = is_arm_[found.part] || is_arm_[found.other];
-    const double least = kFaultDepth * static_cast<double>(found.measures.height);
-    if (is_of_arm && is_fault(found.kind) && found.measures.relation != SC_RELATION_JOINED &&
-        static_cast<double>(found.measures.depth) >= least) {
+    if ((is_arm_[found.part] || is_arm_[found.other]) && found.measures.relation != SC_RELATION_JOINED &&
+        is_deep_fault(found)) {
       out.faults.push_back(found);
     }
   }

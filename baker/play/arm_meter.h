@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "baker/play/bone_joints.h"
@@ -22,6 +23,11 @@ struct ResponseMeasures {
   double residual_p95 = 0;  // depth of the deepest fault
   double us_mean = 0, us_p99 = 0;
 };
+
+// Is a body part of an arm, by its name?
+bool is_of_arm(std::string_view part);
+// Is a penetration a fault that counts: 3 mm deep or more on a human?
+bool is_deep_fault(const Penetration& found);
 
 // The arms of a character in a pose.
 struct ArmPose {

@@ -13,14 +13,16 @@ double processor_us() { return 1e6 * static_cast<double>(std::clock()) / CLOCKS_
 
 }  // namespace
 
-Responder::Responder(const AnimatedAsset& animated, Target target, int ahead)
+Responder::Responder(const AnimatedAsset& animated, Target target, int ahead, const OpenAsset* other)
     : animated_(animated),
       target_(target),
       ahead_(ahead),
       joints_(animated),
       meter_(animated, target),
       tally_(animated.frame().height) {
-  body_ = Body(animated.asset().model());
+  BodyDef body;
+  body.largest_other = other == nullptr ? nullptr : other->model().handle();
+  body_ = Body(animated.asset().model(), body);
   check_runtime(body_.status());
   const std::vector<std::uint32_t>& joint = joints_.joint_of_bone();
   std::vector<std::uint32_t> parents(joint.size()), bone_of(joint.size());
@@ -47,7 +49,7 @@ std::vector<sc_transform> Responder::joints_at(const MotionFrame& frame) const {
   return out;
 }
 
-Responder::Corrected Responder::correct(int frame) {
+Responder::Corrected Responder::correct(int frame, const sc_transform* place, const Body* other) {
   const MotionFrame& now = animated_.frame_at(frame);
   const bool starts_clip = frame == 0 || animated_.frame_at(frame - 1).clip != now.clip;
   if (starts_clip) state_ = {};
@@ -60,7 +62,11 @@ Responder::Corrected Responder::correct(int frame) {
   std::vector<sc_transform> joints = joints_at(now), ahead;
   const std::vector<float> morphs(deformation.morphs.begin(), deformation.morphs.end());
   ResponseFrame asked;
+  const sc_body* const others[] = {other == nullptr ? nullptr : other->handle()};
   asked.joints = joints.data();
+  asked.place = place;
+  asked.others = others;
+  asked.other_count = other == nullptr ? 0 : 1;
   asked.morph_weights = morphs.empty() ? nullptr : morphs.data();
   asked.morph_weight_count = morphs.size();
   asked.seconds =

@@ -13,9 +13,9 @@ namespace spherechain::baker {
 // Plays the frames of a motion through the runtime's response, as a game does. The asset's bones must move it.
 class Responder {
  public:
-  // `ahead`: so many frames are known in advance. Throws Error(kFile) where the asset has no arms, or where bones do
-  // not move it.
-  Responder(const AnimatedAsset& animated, Target target, int ahead);
+  // `ahead`: so many frames are known in advance. `other`: the largest asset that it will meet; null: none is larger
+  // than its own. Throws Error(kFile) where the asset has no arms, or where bones do not move it.
+  Responder(const AnimatedAsset& animated, Target target, int ahead, const OpenAsset* other = nullptr);
 
   struct Corrected {
     Deformation animated, corrected;
@@ -23,11 +23,14 @@ class Responder {
     bool starts_clip;
     double us;  // processor time of the response
   };
-  // The corrected pose of a frame. Frames come in their order; each clip starts afresh.
-  Corrected correct(int frame);
+  // The corrected pose of a frame. Frames come in their order; each clip starts afresh. `place`: where the character
+  // stands; null: where it is animated. `other`: a body to stay out of; null: none.
+  Corrected correct(int frame, const sc_transform* place = nullptr, const Body* other = nullptr);
   // The same, measured.
   Deformation respond(int frame);
   ResponseMeasures measures() const { return tally_.measures(); }
+  // In the pose that was corrected last.
+  Body& body() { return body_; }
 
  private:
   std::vector<sc_transform> joints_at(const MotionFrame& frame) const;

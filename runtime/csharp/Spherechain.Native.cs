@@ -679,7 +679,7 @@ namespace Spherechain
             public uint Rounds;
             public JointTransform* Ahead;
             public uint AheadFrames;
-            /// <summary>other characters and props to stay out of, at most 8, always in this order</summary>
+            /// <summary>other characters and props, as posed now; at most 8, always in this order</summary>
             public IntPtr* Others;
             public UIntPtr OtherCount;
             /// <summary>null: none</summary>

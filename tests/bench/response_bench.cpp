@@ -2,12 +2,15 @@
 // spherechain_bench_response [--each] [--fps N] [--seconds S] ASSET SOURCE [ASSET SOURCE ...]: characters as animated,
 // by sc_respond and by capsules, in one run. All are measured by penetrations in full, as `play --respond` does.
 // `--each` prints every frame, too.
+// With --facing, --beside or --passing METRES ASSET SOURCE ASSET SOURCE: two characters that stand so, and stay out of
+// each other. Any number of these.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -16,6 +19,7 @@
 #include "baker/play/target.h"
 #include "capsule_response.h"
 #include "table.h"
+#include "two_characters.h"
 
 using namespace spherechain;
 
@@ -121,24 +125,89 @@ Row run(const char* asset, const char* source, const Choice& choice) {
   return {name, by_response.measures(), by_capsules.measures()};
 }
 
+std::optional<bench::Stance> stance_of(const std::string& word) {
+  if (word == "--facing") return bench::Stance::kFacing;
+  if (word == "--beside") return bench::Stance::kBeside;
+  return word == "--passing" ? std::optional(bench::Stance::kPassing) : std::nullopt;
+}
+
+// Two characters of four files.
+struct Two {
+  bench::Stance stance;
+  const char *name, *metres;  // as it was asked for
+  const char* const* files;
+};
+
+void print_heads_of_two() {
+  fmt::print(
+      "| | frames | arm in the other | anything in the other | alone, first | alone, second | new | wrists | elbows | "
+      "jump, "
+      "mm | flickers | left, mm | us a character |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+}
+
+// Both are measured together: an arm's faults with the other character, wrists and elbows of both.
+void run(const Two& asked, const Choice& choice) {
+  const baker::FrameChoice frames{0, choice.fps};
+  const char* const* const files = asked.files;
+  const baker::AnimatedAsset first(files[0], files[1], baker::MotionChoice(), frames),
+      second(files[2], files[3], baker::MotionChoice(), frames);
+  constexpr double kMetres = kHuman / 1000;
+  bench::TwoCharacters two(first, second, baker::choose_target("auto"), asked.stance, std::stod(asked.metres));
+  baker::ResponseTally both(kMetres),
+      alone[] = {baker::ResponseTally(first.frame().height), baker::ResponseTally(second.frame().height)};
+  int before = 0, after = 0;
+  double left = 0;
+  for (int f = 0; f < two.frame_count() && f < choice.seconds * choice.fps; ++f) {
+    const bench::TwoCharacters::Frame frame = two.frame(f);
+    both.add(frame.before, frame.after, frame.us, frame.starts_clip);
+    for (std::size_t i = 0; i < 2; ++i) {
+      alone[i].add(frame.alone_before[i], frame.alone_after[i], 0, frame.starts_clip);
+    }
+    before += frame.is_faulty_before ? 1 : 0;
+    after += frame.is_faulty_after ? 1 : 0;
+    left = std::max(left, depth_of(frame.after, kMetres));
+    if (choice.each) {
+      fmt::print("frame {}: fault {:5.1f} | response: {}\n", f, depth_of(frame.before, kMetres),
+                 text_of(frame.before, frame.after, kMetres));
+    }
+  }
+  const baker::ResponseMeasures m = both.measures(), own[] = {alone[0].measures(), alone[1].measures()};
+  const auto name = [](const char* source) { return std::filesystem::path(source).stem().string(); };
+  fmt::print(
+      "| {} {}: {}, {} | {} | {} / {} | {} / {} | {} / {} | {} / {} | {} | {:.2f} | {:.2f} | {:.0f} | {} | {:.0f} | "
+      "{:.0f} |\n",
+      asked.name, asked.metres, name(files[1]), name(files[3]), m.frames, m.faulty_before, m.faulty_after, before,
+      after, own[0].faulty_before, own[0].faulty_after, own[1].faulty_before, own[1].faulty_after, m.new_faults,
+      m.wrist_acceleration, m.elbow_acceleration, kHuman * m.largest_jump, m.flickers, left, m.us_mean / 2);
+  std::fflush(stdout);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
   std::vector<const char*> files;
+  std::vector<Two> twos;
   Choice choice;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if ((word == "--fps" || word == "--seconds") && i + 1 < argc) {
       (word == "--fps" ? choice.fps : choice.seconds) = std::stod(argv[++i]);
+    } else if (const auto stance = stance_of(word); stance && i + 5 < argc) {
+      twos.push_back({*stance, argv[i] + 2, argv[i + 1], argv + i + 2});
+      i += 5;
     } else if (word == "--each") {
       choice.each = true;
     } else {
       files.push_back(argv[i]);
     }
   }
-  if (files.empty() || files.size() % 2 != 0) throw std::runtime_error("pass pairs of ASSET SOURCE");
+  if (files.empty() == twos.empty() || files.size() % 2 != 0) throw std::runtime_error("pass pairs of ASSET SOURCE");
   fmt::print("{}\n\n", bench::machine());
   std::fflush(stdout);
+  if (!twos.empty()) print_heads_of_two();
+  for (const Two& two : twos) run(two, choice);
+  if (!twos.empty()) return 0;
   std::vector<Row> rows;
   for (std::size_t i = 0; i < files.size(); i += 2) rows.push_back(run(files[i], files[i + 1], choice));
   print(rows);

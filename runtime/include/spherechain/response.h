@@ -61,7 +61,7 @@ typedef struct sc_response_frame {
    * Give it in every frame of a state, or in none. */
   const sc_transform* ahead SC_ZERO;
   uint32_t ahead_frames SC_ZERO;
-  const sc_body* const* others SC_ZERO; /* other characters and props to stay out of, at most 8, always in this order */
+  const sc_body* const* others SC_ZERO; /* other characters and props, as posed now; at most 8, always in this order */
   size_t other_count SC_ZERO;
   const sc_ground* ground SC_ZERO; /* null: none */
   /* Joints that stay where they are animated, a hand on a table: at most 4, and only as well as the joints above them
@@ -97,7 +97,7 @@ SPHERECHAIN_API void sc_destroy_response(sc_response* response) SC_NOEXCEPT; /* 
  *
  * SC_OK; SC_NULL, SC_BAD_VALUE (with SC_FIELD_TRANSFORM: a transform is not finite; with SC_FIELD_JOINTS: a planted
  * joint does not exist, or they are too many), or a status of the questions: then
- * joints and state are as they were. */
+ * joints and state are as they were. After SC_OK the body is in the corrected pose. */
 SPHERECHAIN_API sc_status sc_respond(sc_response* response, uint64_t* state, sc_response_frame* frame) SC_NOEXCEPT;
 
 #if defined(__cplusplus)

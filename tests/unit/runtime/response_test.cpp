@@ -97,8 +97,8 @@ struct Played {
     }
     return world;
   }
-  // How deep arms are at fault beyond the rule, found in another way than the response finds it.
-  double fault_depth(const Joints& joints) {
+  // Moves a body to these joints, in another way than the response does.
+  void pose(Body& of, const Joints& joints, const Transform& place = {{0, 0, 0}, {0, 0, 0, 1}, {1, 1, 1}}) const {
     std::vector<float> bones;
     const std::vector<Transform> world = world_of(joints);
     for (std::size_t j = 0; j < joints.size(); ++j) {
@@ -117,7 +117,11 @@ struct Played {
     pose.bones = bones.data();
     pose.bone_count = bones.size() / 12;
     pose.bone_layout = SC_ROWS_3X4;
-    REQUIRE(looker.set_pose(pose) == SC_OK);
+    REQUIRE(of.set_pose(pose, place) == SC_OK);
+  }
+  // How deep arms are at fault beyond the rule.
+  double fault_depth(const Joints& joints) {
+    pose(looker, joints);
     double sum = 0;
     for (const Penetration& found : looker.penetrations()) {
       const std::string_view name = model.part_name(found.part), other = model.part_name(found.other);
@@ -521,6 +525,39 @@ TEST_CASE("a hand stays out of another character and of the ground") {
     CHECK(played.frame.turned > 0);
     CHECK(last < 0.02F * height);
   }
+}
+
+TEST_CASE("characters that respond one after the other keep out of each other") {
+  Played first, second;
+  const float tall = first.model.info().height;
+  const Transform place{{0.4F * tall, 0, 0.15F * tall}, {0, 1, 0, 0}, {1, 1, 1}};  // at the left, looks the other way
+  const sc_body *const others_of_first[] = {second.body.handle()}, *const others_of_second[] = {first.body.handle()};
+  first.frame.others = others_of_first;
+  second.frame.others = others_of_second;
+  first.frame.other_count = second.frame.other_count = 1;
+  second.frame.place = &place;
+  const auto depth = [](Body& of, const Body& other) {
+    double sum = 0;
+    for (const Penetration& found : of.penetrations(other)) sum += double{found.fault_depth};
+    return sum;
+  };
+  int before = 0, after = 0;
+  for (std::size_t f = 0; f < kFrames; ++f) {
+    Joints joints = first.at(f), joints_of_second = second.at((f + 60) % kFrames);
+    first.pose(first.looker, joints);
+    second.pose(second.looker, joints_of_second, place);
+    before += depth(first.looker, second.looker) > 0 ? 1 : 0;
+    second.pose(second.body, joints_of_second, place);
+    REQUIRE(first.respond(joints) == SC_OK);
+    REQUIRE(second.respond(joints_of_second) == SC_OK);
+    first.pose(first.looker, joints);
+    second.pose(second.looker, joints_of_second, place);
+    const double left = depth(first.looker, second.looker);
+    after += left > 0 ? 1 : 0;
+    CHECK(std::abs(depth(first.body, second.body) - left) < 1e-3 * double{tall});  // the bodies are as corrected, too
+  }
+  CHECK(before > 20);
+  CHECK(after < before / 3);
 }
 
 TEST_CASE("what cannot be is refused, and changes nothing") {
