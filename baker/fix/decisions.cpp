@@ -221,11 +221,9 @@ class Refuser {
   }
 
   void measure_again(const Turns& cured, Refusals& out) {
-    std::vector<double> frames;
     std::vector<int> changed;
     const std::size_t count = facts_.clip.count();
     for (int f = 0; f < facts_.clip.frames(); ++f) {
-      frames.push_back(f);
       const auto is_as_cured = [&](int g) {
         const auto at = static_cast<std::size_t>(std::min(g, facts_.clip.frames() - 1)) * count;
         return std::equal(cured.begin() + static_cast<std::ptrdiff_t>(at),
@@ -235,7 +233,7 @@ class Refuser {
       if (!is_as_cured(f) || !is_as_cured(f + 1)) changed.push_back(f);
     }
     FaultFinder finder(facts_.animated, facts_.clip);
-    std::vector<PosePenetration> found = finder.in_frames(frames, mend_.turns);
+    std::vector<PosePenetration> found = finder.in_sequence(mend_.turns);
     const std::vector<PosePenetration> between = finder.between(changed, mend_.turns);
     found.insert(found.end(), between.begin(), between.end());
     std::erase_if(found, [](const PosePenetration& one) { return !is_fault(one.found.kind); });
