@@ -13,8 +13,9 @@ namespace {
 constexpr double kShaky = 1.5;        // ratio of the jerk to that of the source clip
 constexpr double kCalm = 5;           // heights per second^3: an invisible jerk
 constexpr double kMovedAtAll = 2e-3;  // heights
-constexpr double kStepMost = 0.01;    // heights that a joint moves further in a frame than before
-constexpr double kStepShare = 0.25;   // of its own step: where the clip jumps, more is not seen
+constexpr double kStepMost = 0.009;   // heights that a joint's end moves in a frame against the source clip
+constexpr double kJump = 0.1;         // the same of the clip itself, where it cuts: more is not seen there
+constexpr double kTip = 0.06;         // heights from a wrist to the middle of its hand
 constexpr double kSpread = 0.02;      // radians a frame: the slope of turns that are spread
 constexpr int kSmoothings = 4;        // with a Gaussian of 1, 2, 4, ... frames
 constexpr int kFadeSteps = 10;        // to this share each, then to nothing
@@ -73,6 +74,19 @@ void smooth(const TurnedClip& clip, Index joint, const std::vector<double>& shar
   }
 }
 
+// A point in the joint's axes: its own place, or where no turning joint is below, further out.
+Vec3 tip_of(const TurnedClip& clip, const std::vector<Affine>& axes, Index joint, double height) {
+  const std::vector<Index> all = clip.above_joint(joint);
+  for (Index j = 0; j < clip.count(); ++j) {
+    const std::vector<Index> above = clip.above_joint(j);
+    if (j != joint && std::find(above.begin(), above.end(), joint) != above.end()) return Vec3::Zero();
+  }
+  if (all.size() < 2) return Vec3::Zero();
+  const Vec3 out = axes[joint].translation() - axes[all[1]].translation();
+  if (out.norm() == 0) return Vec3::Zero();
+  return axes[joint].linear().inverse() * (kTip * height / out.norm() * out);
+}
+
 }  // namespace
 
 void fade_out(const TurnedClip& clip, Index joint, const std::vector<char>& marked, double seconds, double least,
@@ -92,15 +106,14 @@ MarkedTurns shaking_turns(const TurnedClip& clip, const Turns& turns, double hei
   const auto pad = static_cast<std::size_t>(std::ceil(kWindowPad * clip.fps()));
   MarkedTurns out;
   for (Index j = 0; j < clip.count(); ++j) {
-    const auto at = [&](std::size_t k, std::size_t f) { return Vec3(axes[k][f][j].translation()); };
+    const Vec3 tip = tip_of(clip, axes[0][0], j, height);
+    const auto at = [&](std::size_t k, std::size_t f) { return Vec3(axes[k][f][j] * tip); };
     std::vector<std::array<double, 3>> jerks(frames, {0, 0, 0});  // before, after, and what is not seen
     std::vector<char> marked(frames, 0);
     for (std::size_t f = 1; f < frames; ++f) {
       const Vec3 moved = at(1, f) - at(0, f);
-      const double own = (at(0, f) - at(0, f - 1)).norm(), now = (at(1, f) - at(1, f - 1)).norm();
-      if (now - own > std::max(kStepMost * height, kStepShare * own)) {
-        marked[f] = marked[f - 1] = 1;
-      }
+      const double own = (at(0, f) - at(0, f - 1)).norm(), more = (moved - (at(1, f - 1) - at(0, f - 1))).norm();
+      if (more > (own > kJump * height ? own : kStepMost * height)) marked[f] = marked[f - 1] = 1;
       if (f < 3 || moved.norm() < kMovedAtAll * height) continue;
       for (std::size_t k = 0; k < 2; ++k) {
         jerks[f][k] = (at(k, f) - 3 * at(k, f - 1) + 3 * at(k, f - 2) - at(k, f - 3)).norm();
