@@ -10,6 +10,7 @@
 #include <set>
 
 #include "baker/check/run.h"
+#include "baker/fix/turned_fbx.h"
 #include "baker/fix/turned_recording.h"
 #include "baker/fix/write_clip.h"
 #include "baker/mesh/error.h"
@@ -107,7 +108,11 @@ class Fixer {
       if (!is_wanted) continue;
       const std::vector<Channel> turned =
           mend(clip, roles_, [&](const KnownEvent& event) { return event.clip == names[number]; });
-      out_.bytes = with_channels(out_.bytes, job_.input, rig(), clip.clip->in_file, {}, turned);
+      if (job_.is_fbx_written)
+        out_.bytes = with_turned_joints(out_.bytes, job_.input, rig(), *clip.clip, turned,
+                                        out_.clips.back().mend.in_window, clip.fps);
+      else
+        out_.bytes = with_channels(out_.bytes, job_.input, rig(), clip.clip->in_file, {}, turned);
     }
   }
 
@@ -201,7 +206,13 @@ class Fixer {
 
 FixedCharacter fix_character(const FixJob& job, const std::function<void(const std::string&)>& report) {
   std::string bytes;
-  if (!job.is_recording_written) bytes = read_as_glb(job.input);
+  if (job.is_fbx_written) {
+    check_regular_file(job.input);
+    bytes = read_file(job.input);
+    check_turnable_fbx(bytes, job.input);
+  } else if (!job.is_recording_written) {
+    bytes = read_as_glb(job.input);
+  }
   const Bake baked = bake(job.input, job.config.bake, report);
   return Fixer(job, std::move(bytes), baked, report).run();
 }

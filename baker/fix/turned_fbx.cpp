@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "baker/fix/turned_fbx.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "baker/fix/fbx_animation.h"
+#include "baker/fix/fbx_curve.h"
+#include "baker/fix/turned_clip.h"
+#include "baker/import/notes.h"
+#include "baker/mesh/error.h"
+#include "baker/mesh/euler.h"
+
+namespace spherechain::baker {
+namespace {
+
+constexpr double kTurnMin = 1e-6;  // radians
+
+Vec3 vec3(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+
+// A joint's rotation in the file: angles about its axes, between a turn before and one after them.
+class JointAngles {
+ public:
+  explicit JointAngles(const FbxObject& model) {
+    const std::array<int, 3> order = rotation_order(model);
+    axes_ = {order[2], order[1], order[0]};
+    constexpr EulerAxes kXyz{2, 1, 0};
+    const auto turn = [&](const char* name) { return rotation_by(kXyz, vec3(model.value(name)).reverse()); };
+    before_ = turn("PreRotation");
+    // Scales that mirror are read as positive ones and half a turn.
+    const Vec3 scale = vec3(model.value("Lcl Scaling", {1, 1, 1})), pivot = vec3(model.value("ScalingPivot"));
+    Vec3 signs = scale.unaryExpr([](double s) { return s < 0 ? -1.0 : 1.0; });
+    signs *= signs.prod();
+    after_ = turn("PostRotation").conjugate() * Eigen::Quaterniond(Eigen::Matrix3d(signs.asDiagonal()));
+    arm_ = signs.cwiseProduct(vec3(model.value("ScalingOffset")) + pivot - scale.cwiseProduct(pivot) -
+                              vec3(model.value("RotationPivot")));
+  }
+
+  // `degrees` are about x, y and z.
+  Eigen::Quaterniond rotation(const Vec3& degrees) const {
+    return before_ * rotation_by(axes_, ordered(degrees)) * after_;
+  }
+  Vec3 degrees(const Eigen::Quaterniond& rotation, const Vec3& near) const {
+    const Vec3 angles = angles_near(before_.conjugate() * rotation * after_.conjugate(), axes_, ordered(near));
+    Vec3 out;
+    for (std::size_t k = 0; k < 3; ++k) out[axes_[k]] = angles[static_cast<Eigen::Index>(k)];
+    return out;
+  }
+  // From the pivot that the joint turns about to its origin, in its own axes.
+  const Vec3& arm() const { return arm_; }
+
+ private:
+  Vec3 ordered(const Vec3& degrees) const { return {degrees[axes_[0]], degrees[axes_[1]], degrees[axes_[2]]}; }
+
+  EulerAxes axes_;
+  Eigen::Quaterniond before_, after_;
+  Vec3 arm_;
+};
+
+// An animated property of a model, "Lcl Rotation" or "Lcl Translation", and its keys before and after.
+struct Property {
+  const FbxObject& model;
+  std::string name;
+  FbxAnimation::Track track;
+  Vec3 still;  // of axes without a curve
+  std::vector<FbxCurve> before, after;
+
+  Vec3 at(std::int64_t tick) const { return at(tick, still); }
+  Vec3 at(std::int64_t tick, const Vec3& constants) const {
+    Vec3 out = constants;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!before[axis].is_empty()) out[static_cast<Eigen::Index>(axis)] = before[axis].at(tick);
+    }
+    return out;
+  }
+  // The times at which a curve has a key.
+  std::set<std::int64_t> ticks() const {
+    std::set<std::int64_t> out;
+    for (const FbxCurve& curve : before)
+      for (const std::int64_t tick : curve.ticks()) out.insert(tick);
+    return out;
+  }
+  // A key in each curve. Keys that do not change stay as they are written.
+  void set(std::int64_t tick, const Vec3& value, bool changes) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!changes && before[axis].has(tick))
+        after[axis].make_linear(tick);
+      else
+        after[axis].set(tick, value[static_cast<Eigen::Index>(axis)]);
+    }
+  }
+  // The lines that lead to new keys and away from them. They are those of before if each curve has a key where another
+  // has one.
+  void lead(std::int64_t first, std::int64_t last) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const FbxCurve& curve = before[axis];
+      const std::optional<std::int64_t> left = curve.before(first), right = curve.after(last);
+      if (left) after[axis].make_linear(*left);
+      for (const std::int64_t tick : ticks()) {
+        const bool is_left = left && tick > *left && tick < first, is_right = right && tick < *right && tick > last;
+        if (is_left || is_right) after[axis].set(tick, curve.at(tick));
+      }
+    }
+  }
+};
+
+class FbxTurner {
+ public:
+  FbxTurner(const FbxFile& fbx, const std::string& file, const SourceRig& rig, const Clip& before,
+            const std::vector<char>& in_window, double fps)
+      : fbx_(fbx),
+        file_(file),
+        rig_(rig),
+        before_(before),
+        in_window_(in_window),
+        fps_(fps),
+        animation_(fbx, file, rig, before),
+        changes_(fbx.tree) {
+    for (const FbxRecord& object : fbx.tree.find("Objects")->inside) {
+      const std::vector<FbxValue> values = fbx.tree.values(object);
+      if (!values.empty() && values[0].whole) taken_ids_.insert(*values[0].whole);
+    }
+  }
+
+  void turn(const Channel& turned) {
+    const Node& node = rig_.nodes[turned.target];
+    const FbxObject* const model = animation_.object(node.fbx_id);
+    if (model == nullptr) fail(node.name, "is no model of its own");
+    check_axes(*model);
+    const JointAngles angles(*model);
+    Property rotation = property(*model, "Lcl Rotation");
+    check_same(rotation, angles, turned.target);
+    std::optional<Property> translation;
+    if (!angles.arm().isZero(1e-9)) translation.emplace(property(*model, "Lcl Translation"));
+    for (const Run& run : runs_of(turned, rotation)) {
+      Vec3 shift = Vec3::Zero();  // from the file's angles to the new ones: the next continue as the file's do
+      for (const std::int64_t tick : run) {
+        const Eigen::Quaterniond from = rotation_at(rig_, before_, turned.target, seconds_of(tick)),
+                                 to(sample(turned, seconds_of(tick)));
+        const bool turns = from.angularDistance(to) > kTurnMin;
+        const Vec3 old = rotation.at(tick);
+        if (!turns) shift.setZero();
+        const Vec3 degrees = angles.degrees(to, old + shift);
+        shift = degrees - old;
+        rotation.set(tick, degrees, turns);
+        // A turn about a pivot would move the joint.
+        if (translation)
+          translation->set(tick, translation->at(tick) + from * angles.arm() - to * angles.arm(), turns);
+      }
+      rotation.lead(run.front(), run.back());
+      if (translation) translation->lead(run.front(), run.back());
+    }
+    write(rotation);
+    if (translation) write(*translation);
+  }
+
+  std::string bytes() {
+    count_new_objects();
+    return changes_.bytes();
+  }
+
+ private:
+  using Run = std::vector<std::int64_t>;  // times of keys
+
+  [[noreturn]] void fail(std::string_view joint, const std::string& what) const {
+    throw Error(ExitCode::kFile, file_ + ": the joint '" + std::string(joint) + "' " + what + " (write a .glb)");
+  }
+
+  void check_axes(const FbxObject& model) const {
+    const double order = model.value("RotationOrder")[0];
+    if (!(order >= 0 && order < 6)) fail(model.name, "has a spheric rotation order, which is no angles about axes");
+    const bool has_more = order != 0 || model.value("PreRotation") != model.value({}) ||
+                          model.value("PostRotation") != model.value({});
+    if (has_more && model.value("RotationActive")[0] == 0) {
+      add_note(file_ + ": the joint '" + std::string(model.name) +
+               "' has a pre- or post-rotation or a rotation order, but not RotationActive: read as if it had");
+    }
+  }
+
+  Property property(const FbxObject& model, const std::string& name) const {
+    Property out{model, name, animation_.track_of(model, name), vec3(model.value(name)), {}, {}};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (const FbxObject* const curve = out.track.curves[axis]) {
+        out.before.emplace_back(fbx_.tree, *curve->record,
+                                file_ + ": a curve of the joint '" + std::string(model.name) + "'");
+      } else {
+        out.before.emplace_back(fbx_.tree);
+      }
+      double& still = out.still[static_cast<Eigen::Index>(axis)];
+      if (out.track.has_curves()) still = out.track.node->value(std::string("d|") + "XYZ"[axis], {still})[0];
+    }
+    out.after = out.before;
+    return out;
+  }
+
+  double seconds_of(std::int64_t tick) const { return static_cast<double>(tick - animation_.start()) / kFbxTicks; }
+
+  // Throws if the file turns the joint otherwise than the clip that was read from it. Axes without a curve may have
+  // either of two values: the model's own or the curve node's.
+  void check_same(const Property& rotation, const JointAngles& angles, Index node) const {
+    constexpr double kSame = 5e-3;  // radians
+    std::set<std::int64_t> ticks = rotation.ticks();
+    if (ticks.empty()) ticks = {animation_.start(), animation_.start() + std::llround(before_.duration * kFbxTicks)};
+    for (const std::int64_t tick : ticks) {
+      const double seconds = seconds_of(tick);
+      const bool is_key = std::all_of(rotation.before.begin(), rotation.before.end(),
+                                      [&](const FbxCurve& curve) { return curve.is_empty() || curve.has(tick); });
+      if (!is_key || seconds < -kSnap || seconds > before_.duration + kSnap) continue;
+      const Eigen::Quaterniond wanted = rotation_at(rig_, before_, node, seconds);
+      const auto is_it = [&](const Vec3& constants) {
+        return angles.rotation(rotation.at(tick, constants)).angularDistance(wanted) < kSame;
+      };
+      if (!is_it(rotation.still) && !is_it(vec3(rotation.model.value(rotation.name))))
+        fail(rotation.model.name, "turns otherwise in the file than in the clip '" + before_.name + "'");
+    }
+  }
+
+  // The windows in which the joint turns, and one frame beside them: each frame, and the keys that are there.
+  std::vector<Run> runs_of(const Channel& turned, const Property& rotation) const {
+    const int count = static_cast<int>(in_window_.size());
+    const auto is_open = [&](int f) { return f >= 0 && f < count && in_window_[static_cast<std::size_t>(f)] != 0; };
+    const std::set<std::int64_t> own = rotation.ticks();
+    std::vector<Run> out;
+    for (int f = 0; f < count; ++f) {
+      std::set<std::int64_t> ticks;
+      bool turns = false;
+      for (; f < count && (is_open(f - 1) || is_open(f) || is_open(f + 1)); ++f) {
+        const double seconds = f / fps_;
+        const Eigen::Quaterniond from = rotation_at(rig_, before_, turned.target, seconds);
+        turns = turns || from.angularDistance(Eigen::Quaterniond(sample(turned, seconds))) > kTurnMin;
+        const std::int64_t tick = animation_.start() + std::llround(seconds * kFbxTicks);
+        const auto near = own.lower_bound(tick - kSnapTicks);
+        ticks.insert(near != own.end() && *near <= tick + kSnapTicks ? *near : tick);
+      }
+      if (!turns) continue;
+      ticks.insert(own.lower_bound(*ticks.begin()), own.upper_bound(*ticks.rbegin()));
+      out.emplace_back(ticks.begin(), ticks.end());
+    }
+    return out;
+  }
+
+  void write(const Property& property) {
+    const FbxRecord &objects = *fbx_.tree.find("Objects"), &links = *fbx_.tree.find("Connections");
+    const auto link = [&](std::int64_t child, std::int64_t parent, const std::string& to) {
+      FbxNewRecord record{"C", {std::string(to.empty() ? "OO" : "OP"), child, parent}, {}};
+      if (!to.empty()) record.values.emplace_back(to);
+      changes_.append(links, std::move(record));
+    };
+    const FbxAnimation::Track& track = property.track;
+    const auto axis_name = [](std::size_t axis) { return std::string("d|") + "XYZ"[axis]; };
+    const std::int64_t node = track.node == nullptr ? new_id() : track.node->id;
+    if (track.node == nullptr) {
+      FbxNewRecord properties{"Properties70", {}, {}};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        properties.inside.push_back({"P",
+                                     {axis_name(axis), std::string("Number"), std::string(), std::string("A"),
+                                      property.still[static_cast<Eigen::Index>(axis)]},
+                                     {}});
+      }
+      const std::string letter = property.name == "Lcl Rotation" ? "R" : "T";
+      changes_.append(objects, {"AnimationCurveNode",
+                                {node, letter + std::string("\0\1AnimCurveNode", 15), std::string()},
+                                {std::move(properties)}});
+      ++new_nodes_;
+      link(node, track.layer->id, {});
+      link(node, property.model.id, property.name);
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (track.curves[axis] != nullptr) {
+        property.after[axis].write(changes_);
+      } else if (!property.after[axis].is_empty()) {
+        const std::int64_t id = new_id();
+        changes_.append(objects, property.after[axis].record(id));
+        ++new_curves_;
+        link(id, node, axis_name(axis));
+      }
+    }
+  }
+
+  // Small numbers: some readers have no exact ones above 2^53.
+  std::int64_t new_id() {
+    while (!taken_ids_.insert(next_id_).second) ++next_id_;
+    return next_id_;
+  }
+
+  // Definitions say how many objects of each type there are.
+  void count_new_objects() {
+    const FbxRecord* const definitions = fbx_.tree.find("Definitions");
+    if (definitions == nullptr || new_curves_ == 0) return;
+    const auto add = [&](const FbxRecord& in, int more) {
+      const FbxRecord* const count = in.find("Count");
+      const auto values = count == nullptr ? std::vector<FbxValue>() : fbx_.tree.values(*count);
+      if (more > 0 && values.size() == 1 && values[0].whole)
+        changes_.set_whole(*count, static_cast<std::int32_t>(*values[0].whole + more));
+    };
+    add(*definitions, new_nodes_ + new_curves_);
+    for (const FbxRecord& type : definitions->inside) {
+      const std::vector<FbxValue> values = fbx_.tree.values(type);
+      if (type.name != "ObjectType" || values.empty()) continue;
+      if (values[0].text == "AnimationCurve") add(type, new_curves_);
+      if (values[0].text == "AnimationCurveNode") add(type, new_nodes_);
+    }
+  }
+
+  static constexpr double kSnap = 1e-4;  // seconds: a frame and a key nearer than this are one
+  static constexpr std::int64_t kSnapTicks = static_cast<std::int64_t>(kSnap * kFbxTicks);
+
+  const FbxFile& fbx_;
+  const std::string& file_;
+  const SourceRig& rig_;
+  const Clip& before_;
+  const std::vector<char>& in_window_;
+  double fps_;
+  FbxAnimation animation_;
+  FbxChanges changes_;
+  std::set<std::int64_t> taken_ids_;
+  std::int64_t next_id_ = 1000000;
+  int new_nodes_ = 0, new_curves_ = 0;
+};
+
+}  // namespace
+
+void check_turnable_fbx(const std::string& fbx, const std::string& file) {
+  if (!is_fbx(fbx))
+    throw Error(ExitCode::kUsage, file + ": is no FBX file, which an .fbx is written of (name the output .glb)");
+  const auto fail = [&](const std::string& what) { throw Error(ExitCode::kFile, file + ": " + what); };
+  const FbxTree tree = parse_fbx(fbx);
+  if (tree.version < 7000 || tree.version >= 8000) {
+    fail("is FBX " + std::to_string(tree.version / 1000) + "." + std::to_string(tree.version / 100 % 10) +
+         ", and an .fbx is written of FBX 7 alone (save it as that, or write a .glb)");
+  }
+  const FbxRecord *const objects = tree.find("Objects"), *const links = tree.find("Connections");
+  if (!tree.is_whole || objects == nullptr || objects->inside_end == 0 || links == nullptr || links->inside_end == 0)
+    fail("its records are damaged or cut off: it cannot be written as an .fbx (export it again, or write a .glb)");
+}
+
+std::string with_turned_joints(const std::string& fbx, const std::string& file, const SourceRig& rig,
+                               const Clip& before, const std::vector<Channel>& turned,
+                               const std::vector<char>& in_window, double fps) {
+  if (turned.empty()) return fbx;
+  check_turnable_fbx(fbx, file);
+  const FbxFile read = read_fbx(fbx);
+  FbxTurner turner(read, file, rig, before, in_window, fps);
+  for (const Channel& channel : turned) turner.turn(channel);
+  return turner.bytes();
+}
+
+}  // namespace spherechain::baker
