@@ -91,8 +91,7 @@ void check_files(const FixOptions& options) {
                 "-o: " + options.output + ": a BVH is written of a BVH alone (--motion TAKE.bvh, or name it .glb)");
   }
   if (kind == FileKind::kFbx && !options.motion.empty()) {
-    throw Error(ExitCode::kUsage,
-                "-o: " + options.output + ": an FBX gets no new clip of --motion (name it .glb)");
+    throw Error(ExitCode::kUsage, "-o: " + options.output + ": an FBX gets no new clip of --motion (name it .glb)");
   }
   if (kind == FileKind::kGlb && !has_ending(options.output, ".glb")) {
     throw Error(ExitCode::kUsage,

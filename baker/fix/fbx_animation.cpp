@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "baker/fix/fbx_curve.h"
 #include "baker/mesh/error.h"
 
 namespace spherechain::baker {
@@ -57,11 +58,12 @@ FbxAnimation::Track FbxAnimation::track_of(const FbxObject& model, const std::st
   const auto below = by_parent_.equal_range(model.id);
   for (const FbxObject* layer : layers_) {
     for (auto link = below.first; link != below.second; ++link) {
-      if (link->second->property != property) continue;
+      const FbxObject* const node = object(link->second->child);
+      if (link->second->property != property || node == nullptr || node->kind != FbxKind::kCurveNode) continue;
       const auto above = by_child_.equal_range(link->second->child);
       const bool is_in_layer =
           std::any_of(above.first, above.second, [&](const auto& one) { return one.second->parent == layer->id; });
-      if (is_in_layer) tracks.push_back(track(*layer, link->second->child));
+      if (is_in_layer) tracks.push_back(track(*layer, node->id));
     }
   }
   const std::string joint = "the joint " + in_quotes(model.name) + " in the stack " + in_quotes(stack_->name);
@@ -75,8 +77,8 @@ FbxAnimation::Track FbxAnimation::track_of(const FbxObject& model, const std::st
     layers += (moving++ == 0 ? "" : ", ") + in_quotes(track.layer->name);
   }
   if (moving > 1) {
-    throw Error(ExitCode::kFile, file_ + ": several layers move " + joint + ": " + layers +
-                                     " (merge them into one, or write a .glb)");
+    throw Error(ExitCode::kFile,
+                file_ + ": several layers move " + joint + ": " + layers + " (merge them into one, or write a .glb)");
   }
   const auto parents = [&](const FbxObject* one, FbxKind kind) {
     const auto above = by_child_.equal_range(one->id);
@@ -85,7 +87,8 @@ FbxAnimation::Track FbxAnimation::track_of(const FbxObject& model, const std::st
       return parent != nullptr && parent->kind == kind;
     });
   };
-  bool shares = out.node != nullptr && (parents(out.node, FbxKind::kLayer) > 1 || parents(out.node, FbxKind::kModel) > 1);
+  bool shares =
+      out.node != nullptr && (parents(out.node, FbxKind::kLayer) > 1 || parents(out.node, FbxKind::kModel) > 1);
   for (const FbxObject* curve : out.curves) shares |= curve != nullptr && parents(curve, FbxKind::kCurveNode) > 1;
   if (shares) {
     throw Error(ExitCode::kFile, file_ + ": " + joint +
@@ -109,9 +112,8 @@ void FbxAnimation::find_start(const SourceRig& rig, const Clip& clip) {
     const auto nodes = by_parent_.equal_range(layer->id);
     for (auto node = nodes.first; node != nodes.second; ++node) {
       const auto above = by_child_.equal_range(node->second->child);
-      const auto to_model = std::find_if(above.first, above.second, [](const auto& one) {
-        return one.second->property.starts_with("Lcl ");
-      });
+      const auto to_model = std::find_if(above.first, above.second,
+                                         [](const auto& one) { return one.second->property.starts_with("Lcl "); });
       if (to_model == above.second) continue;
       for (const FbxObject* curve : track(*layer, node->second->child).curves) {
         const FbxRecord* const times = curve == nullptr ? nullptr : curve->record->find("KeyTime");
@@ -119,7 +121,8 @@ void FbxAnimation::find_start(const SourceRig& rig, const Clip& clip) {
         if (!array) continue;
         for (std::size_t k = array->items.size(); k-- > 0;) {
           const std::int64_t tick = array->whole(k);
-          if (static_cast<double>(tick) < first - kSlack || static_cast<double>(tick) > last + kSlack) continue;
+          const auto time = static_cast<double>(tick);
+          if (!is_fbx_time(tick) || time < first - kSlack || time > last + kSlack) continue;
           const auto known = last_of_model.emplace(to_model->second->parent, tick).first;
           known->second = std::max(known->second, tick);
           break;

@@ -11,8 +11,6 @@
 
 namespace spherechain::baker {
 
-inline constexpr double kFbxTicks = 46186158000;  // a second
-
 // The stack of an FBX file that a clip was read from.
 class FbxAnimation {
  public:

@@ -44,6 +44,7 @@ FbxCurve::FbxCurve(const FbxTree& tree, const FbxRecord& record, const std::stri
                               data.items.size() == 4 * counts.items.size();
   for (std::size_t k = 0; k < times.items.size(); ++k) {
     const std::int64_t tick = times.whole(k);
+    if (!is_fbx_time(tick)) fail("a time that is days away");
     if (!keys_.empty() && tick <= keys_.rbegin()->first) fail("times that do not ascend");
     set(tick, values.number(k));
     Key& key = keys_[tick];
@@ -76,8 +77,8 @@ double FbxCurve::at(std::int64_t tick) const {
   if (next == keys_.end()) return keys_.rbegin()->second.number;
   if (next == keys_.begin() || next->first == tick) return next->second.number;
   const auto& [time, key] = *std::prev(next);
-  const double share =
-      (static_cast<double>(tick) - static_cast<double>(time)) / (static_cast<double>(next->first) - static_cast<double>(time));
+  const double share = (static_cast<double>(tick) - static_cast<double>(time)) /
+                       (static_cast<double>(next->first) - static_cast<double>(time));
   return (1 - share) * key.number + share * next->second.number;
 }
 

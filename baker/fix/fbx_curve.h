@@ -11,6 +11,14 @@
 
 namespace spherechain::baker {
 
+inline constexpr double kFbxTicks = 46186158000;  // a second
+
+// True if double precision holds it.
+constexpr bool is_fbx_time(std::int64_t tick) {
+  constexpr std::int64_t kMax = std::int64_t{1} << 53;
+  return tick > -kMax && tick < kMax;
+}
+
 // A curve of an FBX file: the values of one axis over time. Keys that nobody sets stay as the file has them.
 class FbxCurve {
  public:

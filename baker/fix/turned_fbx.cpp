@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <stdexcept>
 
 #include "baker/fix/fbx_animation.h"
 #include "baker/fix/fbx_curve.h"
@@ -93,13 +94,21 @@ struct Property {
   // The lines that lead to new keys and away from them. They are those of before if each curve has a key where another
   // has one.
   void lead(std::int64_t first, std::int64_t last) {
+    const std::set<std::int64_t> all = ticks();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const FbxCurve& curve = before[axis];
-      const std::optional<std::int64_t> left = curve.before(first), right = curve.after(last);
-      if (left) after[axis].make_linear(*left);
-      for (const std::int64_t tick : ticks()) {
-        const bool is_left = left && tick > *left && tick < first, is_right = right && tick < *right && tick > last;
-        if (is_left || is_right) after[axis].set(tick, curve.at(tick));
+      const auto beside = [&](bool is_left) -> std::optional<std::int64_t> {
+        if (!before[axis].is_empty()) return is_left ? before[axis].before(first) : before[axis].after(last);
+        const auto found = is_left ? all.lower_bound(first) : all.upper_bound(last);
+        if (found == (is_left ? all.begin() : all.end())) return {};
+        return is_left ? *std::prev(found) : *found;
+      };
+      const std::optional<std::int64_t> left = beside(true), right = beside(false);
+      for (const std::int64_t tick : all) {
+        if ((!left || tick < *left || tick >= first) && (!right || tick > *right || tick <= last)) continue;
+        if (!before[axis].has(tick))
+          after[axis].set(tick, at(tick)[static_cast<Eigen::Index>(axis)]);
+        else if (left && tick == *left)
+          after[axis].make_linear(tick);
       }
     }
   }
@@ -126,7 +135,7 @@ class FbxTurner {
   void turn(const Channel& turned) {
     const Node& node = rig_.nodes[turned.target];
     const FbxObject* const model = animation_.object(node.fbx_id);
-    if (model == nullptr) fail(node.name, "is no model of its own");
+    if (model == nullptr || !turned_models_.insert(model->id).second) fail(node.name, "is no model of its own");
     check_axes(*model);
     const JointAngles angles(*model);
     Property rotation = property(*model, "Lcl Rotation");
@@ -145,8 +154,7 @@ class FbxTurner {
         shift = degrees - old;
         rotation.set(tick, degrees, turns);
         // A turn about a pivot would move the joint.
-        if (translation)
-          translation->set(tick, translation->at(tick) + from * angles.arm() - to * angles.arm(), turns);
+        if (translation) translation->set(tick, translation->at(tick) + from * angles.arm() - to * angles.arm(), turns);
       }
       rotation.lead(run.front(), run.back());
       if (translation) translation->lead(run.front(), run.back());
@@ -170,8 +178,8 @@ class FbxTurner {
   void check_axes(const FbxObject& model) const {
     const double order = model.value("RotationOrder")[0];
     if (!(order >= 0 && order < 6)) fail(model.name, "has a spheric rotation order, which is no angles about axes");
-    const bool has_more = order != 0 || model.value("PreRotation") != model.value({}) ||
-                          model.value("PostRotation") != model.value({});
+    const bool has_more =
+        order != 0 || model.value("PreRotation") != model.value({}) || model.value("PostRotation") != model.value({});
     if (has_more && model.value("RotationActive")[0] == 0) {
       add_note(file_ + ": the joint '" + std::string(model.name) +
                "' has a pre- or post-rotation or a rotation order, but not RotationActive: read as if it had");
@@ -188,7 +196,7 @@ class FbxTurner {
         out.before.emplace_back(fbx_.tree);
       }
       double& still = out.still[static_cast<Eigen::Index>(axis)];
-      if (out.track.has_curves()) still = out.track.node->value(std::string("d|") + "XYZ"[axis], {still})[0];
+      if (out.track.has_curves()) still = out.track.node->value(std::string("d|") + "XYZ" [axis], { still })[0];
     }
     out.after = out.before;
     return out;
@@ -314,7 +322,7 @@ class FbxTurner {
   double fps_;
   FbxAnimation animation_;
   FbxChanges changes_;
-  std::set<std::int64_t> taken_ids_;
+  std::set<std::int64_t> turned_models_, taken_ids_;
   std::int64_t next_id_ = 1000000;
   int new_nodes_ = 0, new_curves_ = 0;
 };
@@ -343,7 +351,11 @@ std::string with_turned_joints(const std::string& fbx, const std::string& file, 
   const FbxFile read = read_fbx(fbx);
   FbxTurner turner(read, file, rig, before, in_window, fps);
   for (const Channel& channel : turned) turner.turn(channel);
-  return turner.bytes();
+  try {
+    return turner.bytes();
+  } catch (const std::length_error&) {
+    throw Error(ExitCode::kFile, file + ": would be longer than 4 GB, which FBX 7.4 has no room for (save it as 7.5)");
+  }
 }
 
 }  // namespace spherechain::baker

@@ -15,8 +15,9 @@ void check_turnable_fbx(const std::string& fbx, const std::string& file);
 // Writes new rotations of joints into an FBX file, binary or text: `turned` is what turned_channels makes of the clip
 // `before`, which was read from the file with `rig`. In the frames of a window (at `fps`), each turned joint gets keys
 // in its three curves; curves that it lacks are added. Between these keys, and from them to the keys beside the window,
-// curves become lines. A joint that turns about a pivot gets keys of its translation, too. All else of the file stays byte for byte. Throws Error(kFile) that names `file`, the joint and
-// the stack if a joint cannot be turned in the file.
+// curves become lines. A joint that turns about a pivot gets keys of its translation, too. All else of the file stays
+// byte for byte. Throws Error(kFile) that names `file`, the joint and the stack if a joint cannot be turned in the
+// file.
 std::string with_turned_joints(const std::string& fbx, const std::string& file, const SourceRig& rig,
                                const Clip& before, const std::vector<Channel>& turned,
                                const std::vector<char>& in_window, double fps);

@@ -29,7 +29,8 @@ template <typename T, typename Struct>
 concept Is = std::same_as<std::remove_const_t<T>, Struct>;
 
 void members(auto& io, Is<Node> auto& n) {
-  io(n.name, n.humanoid_bone, n.is_attachment, n.parent, n.in_file, n.fbx_id, n.local, n.translation, n.rotation, n.scale);
+  io(n.name, n.humanoid_bone, n.is_attachment, n.parent, n.in_file, n.fbx_id, n.local, n.translation, n.rotation,
+     n.scale);
 }
 void members(auto& io, Is<SourceBuffer> auto& b) {
   io(b.mesh, b.primitive, b.first_vertex, b.vertex_count, b.hash, b.triangle_count, b.name);

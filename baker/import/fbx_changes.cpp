@@ -157,7 +157,8 @@ std::string FbxChanges::bytes() const {
   const BinaryWriter writer(tree_.is_wide);
   std::vector<const Change*> ordered;
   for (const Change& change : changes_) ordered.push_back(&change);
-  std::stable_sort(ordered.begin(), ordered.end(), [](const Change* a, const Change* b) { return a->begin < b->begin; });
+  std::stable_sort(ordered.begin(), ordered.end(),
+                   [](const Change* a, const Change* b) { return a->begin < b->begin; });
 
   std::string out;
   std::size_t at = 0;

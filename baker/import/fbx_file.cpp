@@ -50,8 +50,8 @@ FbxFile read_fbx(std::string_view bytes) {
       } else if (list.name == "Connections" && record.name == "C") {
         const std::vector<FbxValue> values = out.tree.values(record);
         if (values.size() < 3 || !values[1].whole || !values[2].whole) continue;
-        out.links.push_back({*values[1].whole, *values[2].whole,
-                             std::string(values.size() > 3 ? values[3].text : std::string_view())});
+        out.links.push_back(
+            {*values[1].whole, *values[2].whole, std::string(values.size() > 3 ? values[3].text : std::string_view())});
       }
     }
   }

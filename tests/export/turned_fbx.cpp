@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// turned_fbx SOURCE.fbx OUT.fbx OUT.glb: turns every joint of the skeleton in the middle third of each clip, by an angle
-// of its own, and writes the same clips into a copy of the source and into a GLB. Prints the joints that turn.
+// turned_fbx SOURCE.fbx OUT.fbx OUT.glb: turns every joint of the skeleton in the middle third of each clip, by an
+// angle of its own, and writes the same clips into a copy of the source and into a GLB. Prints the joints that turn.
 #include <cmath>
 #include <cstdio>
 #include <set>
