@@ -29,7 +29,7 @@ FbxCurve::FbxCurve(const FbxTree& tree, const FbxRecord& record, const std::stri
     std::optional<FbxArray> array = records_[p] == nullptr ? std::nullopt : tree.array(*records_[p]);
     if (!array && p <= kValues) fail(std::string("no numbers in ") + kNames[p]);
     if (!array) continue;
-    forms_[p] = {array->type, array->is_packed, {}};
+    forms_[p] = {array->type, array->is_packed, {array->items.begin(), array->items.end()}};
     read[p] = std::move(*array);
   }
   const auto& [times, values, flags, data, counts] = read;
@@ -102,6 +102,7 @@ void FbxCurve::make_linear(std::int64_t tick) {
 
 std::array<FbxNewArray, FbxCurve::kParts> FbxCurve::arrays() const {
   std::array<FbxNewArray, kParts> out = forms_;
+  for (FbxNewArray& array : out) array.items.clear();
   const Key* last = nullptr;
   std::int64_t alike = 0;
   const auto count = [&] {
@@ -126,7 +127,7 @@ std::array<FbxNewArray, FbxCurve::kParts> FbxCurve::arrays() const {
 void FbxCurve::write(FbxChanges& changes) const {
   auto all = arrays();
   for (std::size_t p = 0; p < kParts; ++p) {
-    if (records_[p] != nullptr) changes.set_array(*records_[p], std::move(all[p]));
+    if (records_[p] != nullptr && all[p].items != forms_[p].items) changes.set_array(*records_[p], std::move(all[p]));
   }
 }
 

@@ -57,7 +57,7 @@ class FbxCurve {
   std::array<FbxNewArray, kParts> arrays() const;
 
   std::array<const FbxRecord*, kParts> records_{};
-  std::array<FbxNewArray, kParts> forms_;  // without items: those are in keys_
+  std::array<FbxNewArray, kParts> forms_;  // as the file has them: their items are in keys_, too
   std::map<std::int64_t, Key> keys_;
 };
 

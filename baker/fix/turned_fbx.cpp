@@ -143,16 +143,12 @@ class FbxTurner {
     std::optional<Property> translation;
     if (!angles.arm().isZero(1e-9)) translation.emplace(property(*model, "Lcl Translation"));
     for (const Run& run : runs_of(turned, rotation)) {
-      Vec3 shift = Vec3::Zero();  // from the file's angles to the new ones: the next continue as the file's do
-      for (const std::int64_t tick : run) {
-        const Eigen::Quaterniond from = rotation_at(rig_, before_, turned.target, seconds_of(tick)),
-                                 to(sample(turned, seconds_of(tick)));
+      const std::vector<Vec3> degrees = degrees_of(turned, rotation, angles, run);
+      for (std::size_t k = 0; k < run.size(); ++k) {
+        const std::int64_t tick = run[k];
+        const auto [from, to] = turn_at(turned, seconds_of(tick));
         const bool turns = from.angularDistance(to) > kTurnMin;
-        const Vec3 old = rotation.at(tick);
-        if (!turns) shift.setZero();
-        const Vec3 degrees = angles.degrees(to, old + shift);
-        shift = degrees - old;
-        rotation.set(tick, degrees, turns);
+        rotation.set(tick, degrees[k], turns || !degrees[k].isApprox(rotation.at(tick), 1e-6));
         // A turn about a pivot would move the joint.
         if (translation) translation->set(tick, translation->at(tick) + from * angles.arm() - to * angles.arm(), turns);
       }
@@ -184,6 +180,43 @@ class FbxTurner {
       add_note(file_ + ": the joint '" + std::string(model.name) +
                "' has a pre- or post-rotation or a rotation order, but not RotationActive: read as if it had");
     }
+  }
+
+  // A joint's rotation before and after.
+  std::pair<Eigen::Quaterniond, Eigen::Quaterniond> turn_at(const Channel& turned, double seconds) const {
+    return {rotation_at(rig_, before_, turned.target, seconds), Eigen::Quaterniond(sample(turned, seconds))};
+  }
+
+  // The new angles. They go on from key to key, or jump where the file's own do, whichever jumps less: keys outside of
+  // the run stay.
+  std::vector<Vec3> degrees_of(const Channel& turned, const Property& rotation, const JointAngles& angles,
+                               const Run& run) const {
+    const std::set<std::int64_t> own = rotation.ticks();
+    const auto left = own.lower_bound(run.front()), right = own.upper_bound(run.back());
+    std::vector<Vec3> best;
+    double least = HUGE_VAL;
+    for (const bool jumps : {true, false}) {
+      std::vector<Vec3> degrees;
+      Vec3 last = rotation.at(left == own.begin() ? run.front() : *std::prev(left));
+      double change = 0;
+      std::int64_t before = run.front();
+      for (const std::int64_t tick : run) {
+        const auto [from, to] = turn_at(turned, seconds_of(tick));
+        const bool is_old = degrees.empty() || from.angularDistance(to) <= kTurnMin;
+        Vec3 near = degrees.empty() ? rotation.at(tick) : last;
+        if (jumps) near = is_old ? rotation.at(tick) : Vec3(last + rotation.at(tick) - rotation.at(before));
+        degrees.push_back(angles.degrees(to, near));
+        change += (degrees.back() - last).norm();
+        last = degrees.back();
+        before = tick;
+      }
+      if (right != own.end()) change += (rotation.at(*right) - last).norm();
+      constexpr double kLess = 1;  // degrees
+      if (change > least - kLess) continue;
+      least = change;
+      best = std::move(degrees);
+    }
+    return best;
   }
 
   Property property(const FbxObject& model, const std::string& name) const {
@@ -235,8 +268,8 @@ class FbxTurner {
       bool turns = false;
       for (; f < count && (is_open(f - 1) || is_open(f) || is_open(f + 1)); ++f) {
         const double seconds = f / fps_;
-        const Eigen::Quaterniond from = rotation_at(rig_, before_, turned.target, seconds);
-        turns = turns || from.angularDistance(Eigen::Quaterniond(sample(turned, seconds))) > kTurnMin;
+        const auto [from, to] = turn_at(turned, seconds);
+        turns = turns || from.angularDistance(to) > kTurnMin;
         const std::int64_t tick = animation_.start() + std::llround(seconds * kFbxTicks);
         const auto near = own.lower_bound(tick - kSnapTicks);
         ticks.insert(near != own.end() && *near <= tick + kSnapTicks ? *near : tick);

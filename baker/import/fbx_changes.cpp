@@ -128,7 +128,7 @@ void FbxChanges::set_array(const FbxRecord& record, FbxNewArray array) {
     changes_.push_back({begin, begin + old.size(), " " + by});
   };
   const FbxRecord* const list = record.find("a");
-  if (list != nullptr) replace(record.values, fmt::format("*{} ", array.items.size()));
+  if (list != nullptr) replace(record.values, fmt::format("*{}", array.items.size()));
   replace(list != nullptr ? list->values : record.values, joined(array.items, ","));
 }
 
