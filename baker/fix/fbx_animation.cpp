@@ -98,8 +98,8 @@ FbxAnimation::Track FbxAnimation::track_of(const FbxObject& model, const std::st
   return out;
 }
 
-// Assimp reads the keys between the stack's ends, and the clip begins with its first. Of each joint the last key in the
-// file is the last of the clip; the median leaves aside where assimp adds keys.
+// Assimp reads the keys between the stack's ends, and the clip begins with its first. A joint's last key in the file is
+// its last in the clip, too. The median of all joints leaves aside those to which assimp adds keys.
 void FbxAnimation::find_start(const SourceRig& rig, const Clip& clip) {
   double first = stack_->value("LocalStart")[0], last = stack_->value("LocalStop")[0];
   constexpr double kSlack = 10000;  // ticks

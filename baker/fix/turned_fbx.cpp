@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "baker/fix/fbx_animation.h"
 #include "baker/fix/fbx_curve.h"
@@ -171,14 +172,16 @@ class FbxTurner {
     throw Error(ExitCode::kFile, file_ + ": the joint '" + std::string(joint) + "' " + what + " (write a .glb)");
   }
 
-  void check_axes(const FbxObject& model) const {
+  void check_axes(const FbxObject& model) {
     const double order = model.value("RotationOrder")[0];
     if (!(order >= 0 && order < 6)) fail(model.name, "has a spheric rotation order, which is no angles about axes");
-    const bool has_more =
-        order != 0 || model.value("PreRotation") != model.value({}) || model.value("PostRotation") != model.value({});
-    if (has_more && model.value("RotationActive")[0] == 0) {
-      add_note(file_ + ": the joint '" + std::string(model.name) +
-               "' has a pre- or post-rotation or a rotation order, but not RotationActive: read as if it had");
+    constexpr std::array<double, 3> kNone{};
+    const bool has_more = order != 0 || model.value("PreRotation") != kNone || model.value("PostRotation") != kNone;
+    if (has_more && model.value("RotationActive")[0] == 0 && !std::exchange(has_inactive_, true)) {
+      add_note(
+          file_ + ": the joint '" + std::string(model.name) +
+          "' has a pre- or post-rotation or a rotation order, but not RotationActive: such joints are read as if " +
+          "they had");
     }
   }
 
@@ -358,6 +361,7 @@ class FbxTurner {
   std::set<std::int64_t> turned_models_, taken_ids_;
   std::int64_t next_id_ = 1000000;
   int new_nodes_ = 0, new_curves_ = 0;
+  bool has_inactive_ = false;  // of which a note tells
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ using EulerAxes = std::array<int, 3>;
 
 Eigen::Quaterniond rotation_by(const EulerAxes& axes, const Eigen::Vector3d& degrees);
 
-// The angles of a rotation. Of all that give it, those nearest to `near`.
+// The angles that give a rotation: the nearest to `near` if several do.
 Eigen::Vector3d angles_near(const Eigen::Quaterniond& rotation, const EulerAxes& axes, const Eigen::Vector3d& near);
 
 }  // namespace spherechain::baker
