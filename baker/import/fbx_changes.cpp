@@ -101,7 +101,8 @@ std::string text_of(const FbxNewRecord& record, const std::string& line_end, std
   const std::string indent(depth, '\t');
   std::string out = indent + record.name + ":", block;
   for (const FbxNewRecord::Value& value : record.values) {
-    out += &value == record.values.data() ? " " : ", ";
+    // As the FBX SDK does: some readers do not know numbers after a space.
+    out += &value == record.values.data() ? " " : std::holds_alternative<std::string>(value) ? ", " : ",";
     if (const auto* const text = std::get_if<std::string>(&value)) out += in_text(*text);
     if (const auto* const number = std::get_if<std::int32_t>(&value)) out += fmt::format("{}", *number);
     if (const auto* const number = std::get_if<std::int64_t>(&value)) out += fmt::format("{}", *number);

@@ -16,9 +16,11 @@ globalThis.window ??= globalThis;
 function loadFbx(file) {
   let bytes = fs.readFileSync(file);
   const warn = console.warn;
-  // three.js knows a text by some letters of the comment that it begins with.
-  if (!bytes.toString('latin1', 0, 7).startsWith('Kaydara'))
-    bytes = Buffer.concat([Buffer.from(`; FBX 7.4.0 project file\n; ${'-'.repeat(200)}\n`), bytes]);
+  // three.js knows a text by some letters of the comment that it begins with, and reads properties without spaces alone.
+  if (!bytes.toString('latin1', 0, 7).startsWith('Kaydara')) {
+    const text = bytes.toString().replace(/^\s*P: .*$/gm, (line) => line.replace(/, (?=[-\d])/g, ','));
+    bytes = Buffer.from(`; FBX 7.4.0 project file\n; ${'-'.repeat(200)}\n${text}`);
+  }
   console.warn = () => {};  // of what it leaves out
   try {
     return new FBXLoader().parse(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length), '');
@@ -29,7 +31,7 @@ function loadFbx(file) {
 
 // Half a turn or none: what is left of a node's scale where it mirrors.
 function halfTurn({ scale }) {
-  const signs = scale.toArray().map(Math.sign), mirror = signs[0] * signs[1] * signs[2];
+  const signs = scale.toArray().map((s) => (s < 0 ? -1 : 1)), mirror = signs[0] * signs[1] * signs[2];
   return new THREE.Quaternion().setFromRotationMatrix(new THREE.Matrix4().makeScale(...signs.map((sign) => sign * mirror)));
 }
 
@@ -62,7 +64,7 @@ export async function compare(fbxFile, glbFile, joints) {
       for (const time of wanted.times.filter((one) => got.times.some((key) => Math.abs(key - one) < kSame))) {
         const degrees = THREE.MathUtils.radToDeg(wanted.at(time).angleTo(got.at(time)));
         if (degrees > worst) worst = degrees;
-        if (degrees > kDegrees) throw new Error(`${clip.name}: ${joint} is off by ${degrees} degrees at ${time} s`);
+        if (!(degrees <= kDegrees)) throw new Error(`${clip.name}: ${joint} is off by ${degrees} degrees at ${time} s`);
         ++compared;
       }
     }
@@ -77,7 +79,7 @@ function men(encodings, folder) {
     console.log('the box man is left out: numpy is missing (Debian: python3-numpy)');
     return [];
   }
-  const seeds = [2, 3, 4, 6, 7, 13, 15, 16, 17, 18, 19, 20, 22, 25, 32, 36];
+  const seeds = [2, 4, 6, 7, 13, 15, 16, 17, 18, 19, 20, 22, 25, 32, 35, 36];
   execFileSync(python, [`${encodings}/write_fbx.py`, folder, ...seeds.map(String)]);
   return seeds.map((seed) => `${folder}/man_${seed}.fbx`);
 }
