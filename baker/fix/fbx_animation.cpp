@@ -15,8 +15,7 @@ std::string in_quotes(std::string_view name) { return "'" + std::string(name) + 
 
 }  // namespace
 
-FbxAnimation::FbxAnimation(const FbxFile& fbx, const std::string& file, const SourceRig& rig, const Clip& clip)
-    : fbx_(fbx), file_(file) {
+FbxAnimation::FbxAnimation(const FbxFile& fbx, const std::string& file, const Clip& clip) : fbx_(fbx), file_(file) {
   for (const FbxObject& object : fbx.objects) objects_.emplace(object.id, &object);
   for (const FbxLink& link : fbx.links) {
     by_parent_.emplace(link.parent, &link);
@@ -32,7 +31,9 @@ FbxAnimation::FbxAnimation(const FbxFile& fbx, const std::string& file, const So
   }
   if (layers_.empty())
     throw Error(ExitCode::kFile, file + ": the stack " + in_quotes(stack_->name) + " has no layer (write a .glb)");
-  find_start(rig, clip);
+  for (const FbxObject& model : fbx.objects) {
+    if (model.kind == FbxKind::kModel) check_layers(model, tracks(model, "Lcl Rotation"));
+  }
 }
 
 const FbxObject* FbxAnimation::object(std::int64_t id) const {
@@ -53,32 +54,40 @@ FbxAnimation::Track FbxAnimation::track(const FbxObject& layer, std::int64_t nod
   return out;
 }
 
-FbxAnimation::Track FbxAnimation::track_of(const FbxObject& model, const std::string& property) const {
-  std::vector<Track> tracks;
+std::vector<FbxAnimation::Track> FbxAnimation::tracks(const FbxObject& model, const std::string& property) const {
+  std::vector<Track> out;
   const auto below = by_parent_.equal_range(model.id);
   for (const FbxObject* layer : layers_) {
     for (auto link = below.first; link != below.second; ++link) {
       const FbxObject* const node = object(link->second->child);
       if (link->second->property != property || node == nullptr || node->kind != FbxKind::kCurveNode) continue;
-      const auto above = by_child_.equal_range(link->second->child);
+      const auto above = by_child_.equal_range(node->id);
       const bool is_in_layer =
           std::any_of(above.first, above.second, [&](const auto& one) { return one.second->parent == layer->id; });
-      if (is_in_layer) tracks.push_back(track(*layer, node->id));
+      if (is_in_layer) out.push_back(track(*layer, node->id));
     }
   }
-  const std::string joint = "the joint " + in_quotes(model.name) + " in the stack " + in_quotes(stack_->name);
-  Track out{layers_.front(), nullptr, {}};
+  return out;
+}
+
+void FbxAnimation::check_layers(const FbxObject& model, const std::vector<Track>& tracks) const {
   std::string layers;
   int moving = 0;
   for (const Track& track : tracks) {
+    if (track.has_curves()) layers += (moving++ == 0 ? "" : ", ") + in_quotes(track.layer->name);
+  }
+  if (moving < 2) return;
+  throw Error(ExitCode::kFile, file_ + ": several layers of the stack " + in_quotes(stack_->name) + " move the joint " +
+                                   in_quotes(model.name) + ": " + layers + " (merge them into one, or write a .glb)");
+}
+
+FbxAnimation::Track FbxAnimation::track_of(const FbxObject& model, const std::string& property) const {
+  Track out{layers_.front(), nullptr, {}};
+  const std::vector<Track> all = tracks(model, property);
+  check_layers(model, all);
+  for (const Track& track : all) {
     const bool is_better = track.has_curves() || (out.node == nullptr && track.layer == layers_.front());
     if (is_better && !out.has_curves()) out = track;
-    if (!track.has_curves()) continue;
-    layers += (moving++ == 0 ? "" : ", ") + in_quotes(track.layer->name);
-  }
-  if (moving > 1) {
-    throw Error(ExitCode::kFile,
-                file_ + ": several layers move " + joint + ": " + layers + " (merge them into one, or write a .glb)");
   }
   const auto parents = [&](const FbxObject* one, FbxKind kind) {
     const auto above = by_child_.equal_range(one->id);
@@ -91,6 +100,7 @@ FbxAnimation::Track FbxAnimation::track_of(const FbxObject& model, const std::st
       out.node != nullptr && (parents(out.node, FbxKind::kLayer) > 1 || parents(out.node, FbxKind::kModel) > 1);
   for (const FbxObject* curve : out.curves) shares |= curve != nullptr && parents(curve, FbxKind::kCurveNode) > 1;
   if (shares) {
+    const std::string joint = "the joint " + in_quotes(model.name) + " in the stack " + in_quotes(stack_->name);
     throw Error(ExitCode::kFile, file_ + ": " + joint +
                                      " shares its curves with another joint or animation (bake the animations, or "
                                      "write a .glb)");
@@ -100,7 +110,7 @@ FbxAnimation::Track FbxAnimation::track_of(const FbxObject& model, const std::st
 
 // Assimp reads the keys between the stack's ends, and the clip begins with its first. A joint's last key in the file is
 // its last in the clip, too. The median of all joints leaves aside those to which assimp adds keys.
-void FbxAnimation::find_start(const SourceRig& rig, const Clip& clip) {
+std::int64_t FbxAnimation::start_of(const SourceRig& rig, const Clip& clip) const {
   double first = stack_->value("LocalStart")[0], last = stack_->value("LocalStop")[0];
   constexpr double kSlack = 10000;  // ticks
   if (first == 0 && last == 0) {
@@ -147,7 +157,7 @@ void FbxAnimation::find_start(const SourceRig& rig, const Clip& clip) {
   }
   const auto middle = starts.begin() + static_cast<std::ptrdiff_t>(starts.size() / 2);
   std::nth_element(starts.begin(), middle, starts.end());
-  start_ = *middle;
+  return *middle;
 }
 
 }  // namespace spherechain::baker

@@ -14,8 +14,9 @@ namespace spherechain::baker {
 // The stack of an FBX file that a clip was read from.
 class FbxAnimation {
  public:
-  // All must outlive it. Throws Error(kFile) that begins with `file` if the clip is not in the file.
-  FbxAnimation(const FbxFile& fbx, const std::string& file, const SourceRig& rig, const Clip& clip);
+  // `fbx` and `file` must outlive it. Throws Error(kFile) that begins with `file` if the clip is not in the file, or
+  // several layers turn a joint: assimp does not add them up.
+  FbxAnimation(const FbxFile& fbx, const std::string& file, const Clip& clip);
 
   // A curve node and its curves for x, y and z; null where there is none yet.
   struct Track {
@@ -31,12 +32,14 @@ class FbxAnimation {
 
   // Null if there is none.
   const FbxObject* object(std::int64_t id) const;
-  // The clip's time 0 on the file's time line.
-  std::int64_t start() const { return start_; }
+  // The clip's time 0 on the file's time line. Throws Error(kFile) if the clip has no keys of the file.
+  std::int64_t start_of(const SourceRig& rig, const Clip& clip) const;
 
  private:
   Track track(const FbxObject& layer, std::int64_t node) const;
-  void find_start(const SourceRig& rig, const Clip& clip);
+  // In each layer that has a curve node for it.
+  std::vector<Track> tracks(const FbxObject& model, const std::string& property) const;
+  void check_layers(const FbxObject& model, const std::vector<Track>& tracks) const;
 
   const FbxFile& fbx_;
   const std::string& file_;
@@ -44,7 +47,6 @@ class FbxAnimation {
   std::multimap<std::int64_t, const FbxLink*> by_parent_, by_child_;
   const FbxObject* stack_ = nullptr;
   std::vector<const FbxObject*> layers_;
-  std::int64_t start_ = 0;
 };
 
 }  // namespace spherechain::baker

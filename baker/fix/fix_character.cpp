@@ -100,14 +100,22 @@ class Fixer {
 
   void fix_own() {
     const std::vector<std::string> names = unique_clip_names(rig());
-    const std::vector<ClipFrames> clips = animated_->clips();
+    const auto number_of = [&](const ClipFrames& clip) {
+      return static_cast<std::size_t>(clip.clip - rig().clips.data());
+    };
+    std::vector<ClipFrames> clips = animated_->clips();
+    std::erase_if(clips, [&](const ClipFrames& clip) {
+      return job_.numbers &&
+             std::find(job_.numbers->begin(), job_.numbers->end(), number_of(clip)) == job_.numbers->end();
+    });
+    if (job_.is_fbx_written) {
+      std::vector<const Clip*> read;
+      for (const ClipFrames& clip : clips) read.push_back(clip.clip);
+      check_turnable_clips(out_.bytes, job_.input, read);
+    }
     for (const ClipFrames& clip : clips) {
-      const auto number = static_cast<std::size_t>(clip.clip - rig().clips.data());
-      const bool is_wanted =
-          !job_.numbers || std::find(job_.numbers->begin(), job_.numbers->end(), number) != job_.numbers->end();
-      if (!is_wanted) continue;
       const std::vector<Channel> turned =
-          mend(clip, roles_, [&](const KnownEvent& event) { return event.clip == names[number]; });
+          mend(clip, roles_, [&](const KnownEvent& event) { return event.clip == names[number_of(clip)]; });
       if (job_.is_fbx_written)
         out_.bytes = with_turned_joints(out_.bytes, job_.input, rig(), *clip.clip, turned,
                                         out_.clips.back().mend.in_window, clip.fps);

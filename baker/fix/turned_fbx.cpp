@@ -125,7 +125,8 @@ class FbxTurner {
         before_(before),
         in_window_(in_window),
         fps_(fps),
-        animation_(fbx, file, rig, before),
+        animation_(fbx, file, before),
+        start_(animation_.start_of(rig, before)),
         changes_(fbx.tree) {
     for (const FbxRecord& object : fbx.tree.find("Objects")->inside) {
       const std::vector<FbxValue> values = fbx.tree.values(object);
@@ -238,14 +239,14 @@ class FbxTurner {
     return out;
   }
 
-  double seconds_of(std::int64_t tick) const { return static_cast<double>(tick - animation_.start()) / kFbxTicks; }
+  double seconds_of(std::int64_t tick) const { return static_cast<double>(tick - start_) / kFbxTicks; }
 
   // Throws if the file turns the joint otherwise than the clip that was read from it. Axes without a curve may have
   // either of two values: the model's own or the curve node's.
   void check_same(const Property& rotation, const JointAngles& angles, Index node) const {
     constexpr double kSame = 5e-3;  // radians
     std::set<std::int64_t> ticks = rotation.ticks();
-    if (ticks.empty()) ticks = {animation_.start(), animation_.start() + std::llround(before_.duration * kFbxTicks)};
+    if (ticks.empty()) ticks = {start_, start_ + std::llround(before_.duration * kFbxTicks)};
     for (const std::int64_t tick : ticks) {
       const double seconds = seconds_of(tick);
       const bool is_key = std::all_of(rotation.before.begin(), rotation.before.end(),
@@ -273,7 +274,7 @@ class FbxTurner {
         const double seconds = f / fps_;
         const auto [from, to] = turn_at(turned, seconds);
         turns = turns || from.angularDistance(to) > kTurnMin;
-        const std::int64_t tick = animation_.start() + std::llround(seconds * kFbxTicks);
+        const std::int64_t tick = start_ + std::llround(seconds * kFbxTicks);
         const auto near = own.lower_bound(tick - kSnapTicks);
         ticks.insert(near != own.end() && *near <= tick + kSnapTicks ? *near : tick);
       }
@@ -357,6 +358,7 @@ class FbxTurner {
   const std::vector<char>& in_window_;
   double fps_;
   FbxAnimation animation_;
+  std::int64_t start_;  // the clip's time 0
   FbxChanges changes_;
   std::set<std::int64_t> turned_models_, taken_ids_;
   std::int64_t next_id_ = 1000000;
@@ -378,6 +380,11 @@ void check_turnable_fbx(const std::string& fbx, const std::string& file) {
   const FbxRecord *const objects = tree.find("Objects"), *const links = tree.find("Connections");
   if (!tree.is_whole || objects == nullptr || objects->inside_end == 0 || links == nullptr || links->inside_end == 0)
     fail("its records are damaged or cut off: it cannot be written as an .fbx (export it again, or write a .glb)");
+}
+
+void check_turnable_clips(const std::string& fbx, const std::string& file, const std::vector<const Clip*>& clips) {
+  const FbxFile read = read_fbx(fbx);
+  for (const Clip* clip : clips) FbxAnimation(read, file, *clip);
 }
 
 std::string with_turned_joints(const std::string& fbx, const std::string& file, const SourceRig& rig,

@@ -12,6 +12,10 @@ namespace spherechain::baker {
 // takes: of another version than 7, or damaged.
 void check_turnable_fbx(const std::string& fbx, const std::string& file);
 
+// Throws Error(kFile) if a clip that was read from the file is not what the file shows: where several layers turn a
+// joint.
+void check_turnable_clips(const std::string& fbx, const std::string& file, const std::vector<const Clip*>& clips);
+
 // Writes new rotations of joints into an FBX file, binary or text: `turned` is what turned_channels makes of the clip
 // `before`, which was read from the file with `rig`. In the frames of a window (at `fps`), each turned joint gets keys
 // in its three curves; curves that it lacks are added. Between these keys, and from them to the keys beside the window,

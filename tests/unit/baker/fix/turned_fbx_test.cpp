@@ -308,8 +308,12 @@ TEST_CASE("turned fbx: what cannot be turned in the file is refused, with the na
       JointChain::curve(61, {0, 60}, {0, 1}, 24836);
   layers.more_links =
       "\tC: \"OO\",32,30\n\tC: \"OO\",60,32\n\tC: \"OP\",60,11, \"Lcl Rotation\"\n\tC: \"OP\",61,60, \"d|X\"\n";
-  says(refused_turn(layers.text()), {"chain.fbx: ", "several layers", "'Arm'", "'Take 001'", "'Base', 'Pose'"});
-  CHECK(turn_all(layers.text(), {"Hip"}).apart < kSamePose);  // which one layer turns
+  for (const char* const joint : {"Arm", "Hip"})  // the arm's motion is read wrongly
+    says(refused_turn(layers.text(), {joint}), {"chain.fbx: several layers", "'Arm'", "'Take 001'", "'Base', 'Pose'"});
+  JointChain other = layers;
+  other.more_links.replace(other.more_links.find("60,11"), 5, "60,12");
+  CHECK(turn_all(other.text(), {"Hip", "Arm"}).apart < kSamePose);  // each layer turns joints of its own
+  CHECK(turn_all(other.text(), {"Hand"}).apart < kSamePose);
   JointChain empty = layers;
   empty.more_links = empty.more_links.substr(0, empty.more_links.rfind("\tC:"));
   CHECK(turn_all(empty.text(), {"Arm"}).apart < kSamePose);  // the other layer has no curves
