@@ -20,6 +20,7 @@ FbxAnimation::FbxAnimation(const FbxFile& fbx, const std::string& file, const Cl
   for (const FbxLink& link : fbx.links) {
     by_parent_.emplace(link.parent, &link);
     by_child_.emplace(link.child, &link);
+    child_and_parent_.emplace(link.child, link.parent);
   }
   stack_ = clip.fbx_id == 0 ? nullptr : object(clip.fbx_id);
   if (stack_ == nullptr)
@@ -61,10 +62,7 @@ std::vector<FbxAnimation::Track> FbxAnimation::tracks(const FbxObject& model, co
     for (auto link = below.first; link != below.second; ++link) {
       const FbxObject* const node = object(link->second->child);
       if (link->second->property != property || node == nullptr || node->kind != FbxKind::kCurveNode) continue;
-      const auto above = by_child_.equal_range(node->id);
-      const bool is_in_layer =
-          std::any_of(above.first, above.second, [&](const auto& one) { return one.second->parent == layer->id; });
-      if (is_in_layer) out.push_back(track(*layer, node->id));
+      if (child_and_parent_.contains({node->id, layer->id})) out.push_back(track(*layer, node->id));
     }
   }
   return out;

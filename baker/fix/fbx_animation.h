@@ -3,6 +3,7 @@
 
 #include <array>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,7 @@ class FbxAnimation {
   const std::string& file_;
   std::map<std::int64_t, const FbxObject*> objects_;
   std::multimap<std::int64_t, const FbxLink*> by_parent_, by_child_;
+  std::set<std::pair<std::int64_t, std::int64_t>> child_and_parent_;
   const FbxObject* stack_ = nullptr;
   std::vector<const FbxObject*> layers_;
 };
