@@ -7,113 +7,15 @@
 #include <stdexcept>
 #include <utility>
 
-#include "baker/fix/fbx_animation.h"
-#include "baker/fix/fbx_curve.h"
+#include "baker/fix/fbx_joint.h"
 #include "baker/fix/turned_clip.h"
 #include "baker/import/notes.h"
 #include "baker/mesh/error.h"
-#include "baker/mesh/euler.h"
 
 namespace spherechain::baker {
 namespace {
 
 constexpr double kTurnMin = 1e-6;  // radians
-
-Vec3 vec3(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
-
-// A joint's rotation in the file: angles about its axes, between a turn before and one after them.
-class JointAngles {
- public:
-  explicit JointAngles(const FbxObject& model) {
-    const std::array<int, 3> order = rotation_order(model);
-    axes_ = {order[2], order[1], order[0]};
-    constexpr EulerAxes kXyz{2, 1, 0};
-    const auto turn = [&](const char* name) { return rotation_by(kXyz, vec3(model.value(name)).reverse()); };
-    before_ = turn("PreRotation");
-    // Scales that mirror are read as positive ones and half a turn.
-    const Vec3 scale = vec3(model.value("Lcl Scaling", {1, 1, 1})), pivot = vec3(model.value("ScalingPivot"));
-    Vec3 signs = scale.unaryExpr([](double s) { return s < 0 ? -1.0 : 1.0; });
-    signs *= signs.prod();
-    after_ = turn("PostRotation").conjugate() * Eigen::Quaterniond(Eigen::Matrix3d(signs.asDiagonal()));
-    arm_ = signs.cwiseProduct(vec3(model.value("ScalingOffset")) + pivot - scale.cwiseProduct(pivot) -
-                              vec3(model.value("RotationPivot")));
-  }
-
-  // `degrees` are about x, y and z.
-  Eigen::Quaterniond rotation(const Vec3& degrees) const {
-    return before_ * rotation_by(axes_, ordered(degrees)) * after_;
-  }
-  Vec3 degrees(const Eigen::Quaterniond& rotation, const Vec3& near) const {
-    const Vec3 angles = angles_near(before_.conjugate() * rotation * after_.conjugate(), axes_, ordered(near));
-    Vec3 out;
-    for (std::size_t k = 0; k < 3; ++k) out[axes_[k]] = angles[static_cast<Eigen::Index>(k)];
-    return out;
-  }
-  // From the pivot that the joint turns about to its origin, in its own axes.
-  const Vec3& arm() const { return arm_; }
-
- private:
-  Vec3 ordered(const Vec3& degrees) const { return {degrees[axes_[0]], degrees[axes_[1]], degrees[axes_[2]]}; }
-
-  EulerAxes axes_;
-  Eigen::Quaterniond before_, after_;
-  Vec3 arm_;
-};
-
-// An animated property of a model, "Lcl Rotation" or "Lcl Translation", and its keys before and after.
-struct Property {
-  const FbxObject& model;
-  std::string name;
-  FbxAnimation::Track track;
-  Vec3 still;  // of axes without a curve
-  std::vector<FbxCurve> before, after;
-
-  Vec3 at(std::int64_t tick) const { return at(tick, still); }
-  Vec3 at(std::int64_t tick, const Vec3& constants) const {
-    Vec3 out = constants;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!before[axis].is_empty()) out[static_cast<Eigen::Index>(axis)] = before[axis].at(tick);
-    }
-    return out;
-  }
-  // The times at which a curve has a key.
-  std::set<std::int64_t> ticks() const {
-    std::set<std::int64_t> out;
-    for (const FbxCurve& curve : before)
-      for (const std::int64_t tick : curve.ticks()) out.insert(tick);
-    return out;
-  }
-  // A key in each curve. Keys that do not change stay as they are written.
-  void set(std::int64_t tick, const Vec3& value, bool changes) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!changes && before[axis].has(tick))
-        after[axis].make_linear(tick);
-      else
-        after[axis].set(tick, value[static_cast<Eigen::Index>(axis)]);
-    }
-  }
-  // The lines that lead to new keys and away from them. They are those of before if each curve has a key where another
-  // has one.
-  void lead(std::int64_t first, std::int64_t last) {
-    const std::set<std::int64_t> all = ticks();
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto beside = [&](bool is_left) -> std::optional<std::int64_t> {
-        if (!before[axis].is_empty()) return is_left ? before[axis].before(first) : before[axis].after(last);
-        const auto found = is_left ? all.lower_bound(first) : all.upper_bound(last);
-        if (found == (is_left ? all.begin() : all.end())) return {};
-        return is_left ? *std::prev(found) : *found;
-      };
-      const std::optional<std::int64_t> left = beside(true), right = beside(false);
-      for (const std::int64_t tick : all) {
-        if ((!left || tick < *left || tick >= first) && (!right || tick > *right || tick <= last)) continue;
-        if (!before[axis].has(tick))
-          after[axis].set(tick, at(tick)[static_cast<Eigen::Index>(axis)]);
-        else if (left && tick == *left)
-          after[axis].make_linear(tick);
-      }
-    }
-  }
-};
 
 class FbxTurner {
  public:
@@ -140,17 +42,19 @@ class FbxTurner {
     if (model == nullptr || !turned_models_.insert(model->id).second) fail(node.name, "is no model of its own");
     check_axes(*model);
     const JointAngles angles(*model);
-    Property rotation = property(*model, "Lcl Rotation");
+    AnimatedProperty rotation(fbx_, animation_, *model, "Lcl Rotation", file_);
     check_same(rotation, angles, turned.target);
-    std::optional<Property> translation;
-    if (!angles.arm().isZero(1e-9)) translation.emplace(property(*model, "Lcl Translation"));
-    for (const Run& run : runs_of(turned, rotation)) {
+    std::optional<AnimatedProperty> translation;
+    if (!angles.arm().isZero(1e-9)) translation.emplace(fbx_, animation_, *model, "Lcl Translation", file_);
+    std::set<std::int64_t> own = rotation.ticks();
+    if (translation) own.merge(translation->ticks());
+    for (const Run& run : runs_of(turned, own)) {
       const std::vector<Vec3> degrees = degrees_of(turned, rotation, angles, run);
       for (std::size_t k = 0; k < run.size(); ++k) {
         const std::int64_t tick = run[k];
         const auto [from, to] = turn_at(turned, seconds_of(tick));
         const bool turns = from.angularDistance(to) > kTurnMin;
-        rotation.set(tick, degrees[k], turns || !degrees[k].isApprox(rotation.at(tick), 1e-6));
+        rotation.set(tick, degrees[k], turns || (degrees[k] - rotation.at(tick)).norm() > kTurnMin);
         // A turn about a pivot would move the joint.
         if (translation) translation->set(tick, translation->at(tick) + from * angles.arm() - to * angles.arm(), turns);
       }
@@ -193,7 +97,7 @@ class FbxTurner {
 
   // The new angles. They go on from key to key, or jump where the file's own do, whichever jumps less: keys outside of
   // the run stay.
-  std::vector<Vec3> degrees_of(const Channel& turned, const Property& rotation, const JointAngles& angles,
+  std::vector<Vec3> degrees_of(const Channel& turned, const AnimatedProperty& rotation, const JointAngles& angles,
                                const Run& run) const {
     const std::set<std::int64_t> own = rotation.ticks();
     const auto left = own.lower_bound(run.front()), right = own.upper_bound(run.back());
@@ -223,49 +127,31 @@ class FbxTurner {
     return best;
   }
 
-  Property property(const FbxObject& model, const std::string& name) const {
-    Property out{model, name, animation_.track_of(model, name), vec3(model.value(name)), {}, {}};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (const FbxObject* const curve = out.track.curves[axis]) {
-        out.before.emplace_back(fbx_.tree, *curve->record,
-                                file_ + ": a curve of the joint '" + std::string(model.name) + "'");
-      } else {
-        out.before.emplace_back(fbx_.tree);
-      }
-      double& still = out.still[static_cast<Eigen::Index>(axis)];
-      if (out.track.has_curves()) still = out.track.node->value(std::string("d|") + "XYZ" [axis], { still })[0];
-    }
-    out.after = out.before;
-    return out;
-  }
-
   double seconds_of(std::int64_t tick) const { return static_cast<double>(tick - start_) / kFbxTicks; }
 
   // Throws if the file turns the joint otherwise than the clip that was read from it. Axes without a curve may have
   // either of two values: the model's own or the curve node's.
-  void check_same(const Property& rotation, const JointAngles& angles, Index node) const {
+  void check_same(const AnimatedProperty& rotation, const JointAngles& angles, Index node) const {
     constexpr double kSame = 5e-3;  // radians
+    const Vec3 rest(rotation.model().value(rotation.name()).data());
     std::set<std::int64_t> ticks = rotation.ticks();
     if (ticks.empty()) ticks = {start_, start_ + std::llround(before_.duration * kFbxTicks)};
     for (const std::int64_t tick : ticks) {
       const double seconds = seconds_of(tick);
-      const bool is_key = std::all_of(rotation.before.begin(), rotation.before.end(),
-                                      [&](const FbxCurve& curve) { return curve.is_empty() || curve.has(tick); });
-      if (!is_key || seconds < -kSnap || seconds > before_.duration + kSnap) continue;
+      if (!rotation.is_key_of_all(tick) || seconds < -kSnap || seconds > before_.duration + kSnap) continue;
       const Eigen::Quaterniond wanted = rotation_at(rig_, before_, node, seconds);
       const auto is_it = [&](const Vec3& constants) {
         return angles.rotation(rotation.at(tick, constants)).angularDistance(wanted) < kSame;
       };
-      if (!is_it(rotation.still) && !is_it(vec3(rotation.model.value(rotation.name))))
-        fail(rotation.model.name, "turns otherwise in the file than in the clip '" + before_.name + "'");
+      if (!is_it(rotation.still()) && !is_it(rest))
+        fail(rotation.model().name, "turns otherwise in the file than in the clip '" + before_.name + "'");
     }
   }
 
   // The windows in which the joint turns, and one frame beside them: each frame, and the keys that are there.
-  std::vector<Run> runs_of(const Channel& turned, const Property& rotation) const {
+  std::vector<Run> runs_of(const Channel& turned, const std::set<std::int64_t>& own) const {
     const int count = static_cast<int>(in_window_.size());
     const auto is_open = [&](int f) { return f >= 0 && f < count && in_window_[static_cast<std::size_t>(f)] != 0; };
-    const std::set<std::int64_t> own = rotation.ticks();
     std::vector<Run> out;
     for (int f = 0; f < count; ++f) {
       std::set<std::int64_t> ticks;
@@ -285,14 +171,14 @@ class FbxTurner {
     return out;
   }
 
-  void write(const Property& property) {
+  void write(const AnimatedProperty& property) {
     const FbxRecord &objects = *fbx_.tree.find("Objects"), &links = *fbx_.tree.find("Connections");
     const auto link = [&](std::int64_t child, std::int64_t parent, const std::string& to) {
       FbxNewRecord record{"C", {std::string(to.empty() ? "OO" : "OP"), child, parent}, {}};
       if (!to.empty()) record.values.emplace_back(to);
       changes_.append(links, std::move(record));
     };
-    const FbxAnimation::Track& track = property.track;
+    const FbxAnimation::Track& track = property.track();
     const auto axis_name = [](std::size_t axis) { return std::string("d|") + "XYZ"[axis]; };
     const std::int64_t node = track.node == nullptr ? new_id() : track.node->id;
     if (track.node == nullptr) {
@@ -300,23 +186,23 @@ class FbxTurner {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         properties.inside.push_back({"P",
                                      {axis_name(axis), std::string("Number"), std::string(), std::string("A"),
-                                      property.still[static_cast<Eigen::Index>(axis)]},
+                                      property.still()[static_cast<Eigen::Index>(axis)]},
                                      {}});
       }
-      const std::string letter = property.name == "Lcl Rotation" ? "R" : "T";
+      const std::string letter = property.name() == "Lcl Rotation" ? "R" : "T";
       changes_.append(objects, {"AnimationCurveNode",
                                 {node, letter + std::string("\0\1AnimCurveNode", 15), std::string()},
                                 {std::move(properties)}});
       ++new_nodes_;
       link(node, track.layer->id, {});
-      link(node, property.model.id, property.name);
+      link(node, property.model().id, property.name());
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (track.curves[axis] != nullptr) {
-        property.after[axis].write(changes_);
-      } else if (!property.after[axis].is_empty()) {
+        property.after()[axis].write(changes_);
+      } else if (!property.after()[axis].is_empty()) {
         const std::int64_t id = new_id();
-        changes_.append(objects, property.after[axis].record(id));
+        changes_.append(objects, property.after()[axis].record(id));
         ++new_curves_;
         link(id, node, axis_name(axis));
       }
