@@ -278,7 +278,8 @@ void note_lost_files(const ReadFile& read, const std::filesystem::path& folder) 
   lost.note(read.name);
 }
 
-// Finds the objects of the file that nodes and clips were read from. Assimp has the file's stacks in order, but for those without keys.
+// Finds the objects of the file that nodes and clips were read from. Assimp has the file's stacks in order, but for
+// those without keys.
 void find_fbx_objects(const AssimpScene& flat, const FbxFile& fbx, SourceRig& rig) {
   std::map<std::string_view, std::int64_t> models;
   std::vector<const FbxObject*> stacks;
