@@ -85,17 +85,29 @@ Pages write_pages(const FixOptions& options, const fs::path& page, const FixedCh
   return out;
 }
 
-void check_files(const FixOptions& options, bool writes_bvh) {
+// By the ending of its name.
+FileKind output_kind(const FixOptions& options) {
+  if (has_ending(options.output, ".bvh")) return FileKind::kBvh;
+  return has_ending(options.output, ".fbx") ? FileKind::kFbx : FileKind::kGlb;
+}
+
+void check_files(const FixOptions& options) {
   check_regular_file(options.input);
+  const FileKind kind = output_kind(options);
+  const bool writes_bvh = kind == FileKind::kBvh;
   if (writes_bvh && !has_ending(options.motion, ".bvh")) {
     throw Error(ExitCode::kUsage,
                 "-o: " + options.output + ": a BVH is written of a BVH alone (--motion TAKE.bvh, or name it .glb)");
   }
-  if (!writes_bvh && !has_ending(options.output, ".glb")) {
-    throw Error(
-        ExitCode::kUsage,
-        "-o: " + options.output +
-            (fs::is_directory(options.output) ? " is a folder" : " is written as a binary glTF (name it .glb)"));
+  if (kind == FileKind::kFbx && !options.motion.empty()) {
+    throw Error(ExitCode::kUsage, "-o: " + options.output + ": an FBX gets no new clip of --motion (name it .glb)");
+  }
+  if (kind == FileKind::kGlb && !has_ending(options.output, ".glb")) {
+    throw Error(ExitCode::kUsage,
+                "-o: " + options.output +
+                    (fs::is_directory(options.output)
+                         ? " is a folder"
+                         : " is written as a binary glTF (name it .glb), or as the FBX that was read (.fbx)"));
   }
   if (fs::is_directory(options.motion)) {
     throw Error(ExitCode::kUsage, "--motion: " + options.motion + " is a folder (name one recording)");
@@ -109,8 +121,7 @@ void check_files(const FixOptions& options, bool writes_bvh) {
   MotionChoice motion;
   motion.motion = options.motion;
   check_outputs(with_motion(with_source(std::move(inputs), "INPUT", options.input), motion),
-                {{"-o", options.output, writes_bvh ? FileKind::kBvh : FileKind::kGlb,
-                  writes_bvh ? options.motion : options.input}},
+                {{"-o", options.output, kind, writes_bvh ? options.motion : options.input}},
                 options.force ? Force::kGiven : Force::kOffered);
 }
 
@@ -118,12 +129,14 @@ void check_files(const FixOptions& options, bool writes_bvh) {
 
 ExitCode run_fix(const FixOptions& options) {
   const fs::path page = installed_page("viewer.html");  // now: a long run may outlive its program's file
-  const bool writes_bvh = has_ending(options.output, ".bvh");
+  const FileKind kind = output_kind(options);
+  const bool writes_bvh = kind == FileKind::kBvh;
   FixJob job;
   job.input = options.input;
   job.clip = options.clip;
   if (!options.motion.empty()) job.recordings = {options.motion};
   job.is_recording_written = writes_bvh;
+  job.is_fbx_written = kind == FileKind::kFbx;
   job.config = default_config();
   if (!options.keep.empty()) job.config = read_config(read_file(options.keep), options.keep, job.config);
   if (!options.character.empty()) job.config.bake.import.character = options.character;
@@ -132,7 +145,7 @@ ExitCode run_fix(const FixOptions& options) {
   if (!options.decisions.empty()) job.decisions = read_decisions(options.decisions);
   job.parts = options.parts;
   job.mend = {options.budget, options.margin};
-  check_files(options, writes_bvh);
+  check_files(options);
   if (!options.motion.empty()) read_capture(options.motion);  // now: a bake may take minutes
 
   FixedCharacter fixed;

@@ -223,8 +223,9 @@ int main(int argc, char** argv) {
   FixOptions fix;
   CLI::App* fix_command = app.add_subcommand("fix", "Turn joints of a clip so that its body parts leave each other");
   add_name(*fix_command, "INPUT", fix.input, "Character: glTF, or anything assimp reads")->required();
-  add_output(*fix_command, "-o,--output", fix.output,
-             "The same with the clips mended (.glb); with --motion TAKE.bvh also that recording mended (.bvh)")
+  add_output(
+      *fix_command, "-o,--output", fix.output,
+      "The same with the clips mended (.glb; .fbx of an FBX); with --motion TAKE.bvh also that recording mended (.bvh)")
       ->required();
   CLI::Option* clip = add_name(*fix_command, "--clip", fix.clip, "The clip to mend: its name or number (default: all)");
   add_name(*fix_command, "--motion", fix.motion,

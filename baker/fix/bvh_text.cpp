@@ -3,21 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <cmath>
-#include <numbers>
+#include "baker/mesh/euler.h"
 
 namespace spherechain::baker {
 namespace {
-
-constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
-
-Eigen::Quaterniond about(int axis, double degrees) {
-  return Eigen::Quaterniond(Eigen::AngleAxisd(degrees / kDegreesPerRadian, Eigen::Vector3d::Unit(axis)));
-}
-
-// The same angle, as near to another as whole turns bring it.
-double wound(double degrees, double near) { return degrees + 360 * std::round((near - degrees) / 360); }
 
 // The angles of a joint: their axes, the outermost first, and their columns in a frame.
 struct Angles {
@@ -45,12 +34,10 @@ bool BvhText::turns_freely(const BvhJoint& joint) {
 }
 
 Eigen::Quaterniond BvhText::rotation(int frame, const BvhJoint& joint) const {
-  Eigen::Quaterniond out = Eigen::Quaterniond::Identity();
-  const Angles angles = angles_of(joint);
-  for (std::size_t k = 0; k < angles.axes.size(); ++k) {
-    out = out * about(angles.axes[k], bvh_.numbers[place_of(frame, angles.columns[k])]);
-  }
-  return out;
+  const auto [axes, columns] = angles_of(joint);
+  Eigen::Vector3d degrees;
+  for (std::size_t k = 0; k < 3; ++k) degrees[static_cast<Eigen::Index>(k)] = bvh_.numbers[place_of(frame, columns[k])];
+  return rotation_by({axes[0], axes[1], axes[2]}, degrees);
 }
 
 void BvhText::turn(int frame, const BvhJoint& joint, const Eigen::Quaterniond& rotation) {
@@ -63,17 +50,7 @@ void BvhText::turn(int frame, const BvhJoint& joint, const Eigen::Quaterniond& r
     const auto changed = changed_.find(before);
     if (changed != changed_.end()) near[static_cast<Eigen::Index>(k)] += changed->second - bvh_.numbers[before];
   }
-  const Eigen::Vector3d one = rotation.toRotationMatrix().eulerAngles(axes[0], axes[1], axes[2]) * kDegreesPerRadian;
-  Eigen::Vector3d best;
-  double least = HUGE_VAL;
-  for (const Eigen::Vector3d& angles : {one, Eigen::Vector3d(one[0] + 180, 180 - one[1], one[2] + 180)}) {
-    Eigen::Vector3d here;
-    for (Eigen::Index k = 0; k < 3; ++k) here[k] = wound(angles[k], near[k]);
-    if (const double apart = (here - near).norm(); apart < least) {
-      least = apart;
-      best = here;
-    }
-  }
+  const Eigen::Vector3d best = angles_near(rotation, {axes[0], axes[1], axes[2]}, near);
   for (std::size_t k = 0; k < 3; ++k) {
     changed_[place_of(frame, columns[k])] = best[static_cast<Eigen::Index>(k)];
   }

@@ -22,8 +22,9 @@ class BvhText {
 
   // True if the joint has three rotation channels, which can express any rotation.
   static bool turns_freely(const BvhJoint& joint);
+  // The joint must turn freely for these.
   Eigen::Quaterniond rotation(int frame, const BvhJoint& joint) const;
-  // The joint must turn freely, and frames must come in ascending order. Among the angles that give this rotation,
+  // Frames must come in ascending order. Among the angles that give this rotation,
   // takes those that continue the previous frame as the file's own angles do.
   void turn(int frame, const BvhJoint& joint, const Eigen::Quaterniond& rotation);
 

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "baker/check/run.h"
+#include "baker/fix/turned_fbx.h"
 #include "baker/fix/turned_recording.h"
 #include "baker/fix/write_clip.h"
 #include "baker/mesh/error.h"
@@ -104,15 +105,27 @@ class Fixer {
 
   void fix_own() {
     const std::vector<std::string> names = unique_clip_names(rig());
-    const std::vector<ClipFrames> clips = animated_->clips();
+    const auto number_of = [&](const ClipFrames& clip) {
+      return static_cast<std::size_t>(clip.clip - rig().clips.data());
+    };
+    std::vector<ClipFrames> clips = animated_->clips();
+    std::erase_if(clips, [&](const ClipFrames& clip) {
+      return job_.numbers &&
+             std::find(job_.numbers->begin(), job_.numbers->end(), number_of(clip)) == job_.numbers->end();
+    });
+    if (job_.is_fbx_written) {
+      std::vector<const Clip*> read;
+      for (const ClipFrames& clip : clips) read.push_back(clip.clip);
+      check_turnable_clips(out_.bytes, job_.input, read);
+    }
     for (const ClipFrames& clip : clips) {
-      const auto number = static_cast<std::size_t>(clip.clip - rig().clips.data());
-      const bool is_wanted =
-          !job_.numbers || std::find(job_.numbers->begin(), job_.numbers->end(), number) != job_.numbers->end();
-      if (!is_wanted) continue;
       const std::vector<Channel> turned =
-          mend(clip, roles_, [&](const KnownEvent& event) { return event.clip == names[number]; });
-      out_.bytes = with_channels(out_.bytes, job_.input, rig(), clip.clip->in_file, {}, turned);
+          mend(clip, roles_, [&](const KnownEvent& event) { return event.clip == names[number_of(clip)]; });
+      if (job_.is_fbx_written)
+        out_.bytes = with_turned_joints(out_.bytes, job_.input, rig(), *clip.clip, turned,
+                                        out_.clips.back().mend.in_window, clip.fps);
+      else
+        out_.bytes = with_channels(out_.bytes, job_.input, rig(), clip.clip->in_file, {}, turned);
     }
   }
 
@@ -260,7 +273,13 @@ class Fixer {
 
 FixedCharacter fix_character(const FixJob& job, const std::function<void(const std::string&)>& report) {
   std::string bytes;
-  if (!job.is_recording_written) bytes = read_as_glb(job.input);
+  if (job.is_fbx_written) {
+    check_regular_file(job.input);
+    bytes = read_file(job.input);
+    check_turnable_fbx(bytes, job.input);
+  } else if (!job.is_recording_written) {
+    bytes = read_as_glb(job.input);
+  }
   const Bake baked = bake(job.input, job.config.bake, report);
   return Fixer(job, std::move(bytes), baked, report).run();
 }

@@ -19,6 +19,7 @@ struct FixJob {
   std::optional<std::vector<std::size_t>> numbers;  // only these of the character's clips
   std::vector<std::string> recordings;  // retargeted; they replace the character's clips unless `numbers` is set
   bool is_recording_written = false;    // write the one recording, a BVH file, not the character
+  bool is_fbx_written = false;          // write the character as the FBX file that it is, not as a GLB; no recordings
   CheckConfig config;
   Baseline baseline;
   std::vector<std::string> parts;  // fix only faults of these body parts; empty: all

@@ -29,7 +29,8 @@ template <typename T, typename Struct>
 concept Is = std::same_as<std::remove_const_t<T>, Struct>;
 
 void members(auto& io, Is<Node> auto& n) {
-  io(n.name, n.humanoid_bone, n.is_attachment, n.parent, n.in_file, n.local, n.translation, n.rotation, n.scale);
+  io(n.name, n.humanoid_bone, n.is_attachment, n.parent, n.in_file, n.fbx_id, n.local, n.translation, n.rotation,
+     n.scale);
 }
 void members(auto& io, Is<SourceBuffer> auto& b) {
   io(b.mesh, b.primitive, b.first_vertex, b.vertex_count, b.hash, b.triangle_count, b.name);
@@ -37,7 +38,7 @@ void members(auto& io, Is<SourceBuffer> auto& b) {
 void members(auto& io, Is<Bone> auto& b) { io(b.node, b.inverse_bind); }
 void members(auto& io, Is<Morph> auto& m) { io(m.name, m.vertices, m.deltas, m.rest_weight); }
 void members(auto& io, Is<Channel> auto& c) { io(c.path, c.target, c.interpolation, c.times, c.values); }
-void members(auto& io, Is<Clip> auto& c) { io(c.name, c.duration, c.in_file, c.channels); }
+void members(auto& io, Is<Clip> auto& c) { io(c.name, c.duration, c.in_file, c.fbx_id, c.channels); }
 void members(auto& io, Is<SourceRig> auto& r) {
   io(r.nodes, r.bones, r.weights, r.morphs, r.clips, r.to_rest, r.pivots);
 }

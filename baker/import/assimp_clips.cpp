@@ -106,7 +106,16 @@ std::vector<Channel> fold(const std::vector<const aiNode*>& chain, const Channel
   for (const aiNode* link : chain) {
     const auto found = by_name.find(link->mName.C_Str());
     links.push_back(found == by_name.end() ? std::vector<Channel>() : read_node(*found->second, target, ticks, file));
-    for (const Channel& channel : links.back()) times.insert(times.end(), channel.times.begin(), channel.times.end());
+  }
+  // One key says no more than that nothing moves, and assimp puts some of its own at the file's time 0.
+  for (const bool is_moving : {true, false}) {
+    for (const std::vector<Channel>& link : links) {
+      for (const Channel& channel : link) {
+        if (channel.times.size() > 1 || !is_moving)
+          times.insert(times.end(), channel.times.begin(), channel.times.end());
+      }
+    }
+    if (!times.empty()) break;
   }
   if (times.empty()) return {};
   times = on_arcs(std::move(times));

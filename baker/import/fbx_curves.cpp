@@ -57,14 +57,6 @@ Eigen::Vector3d angles_of(const std::array<int, 3>& order, const Eigen::Quaterni
   return miss(a) <= miss(other) ? a : other;
 }
 
-std::array<int, 3> order_of(const FbxObject& model) {
-  constexpr std::array<std::array<int, 3>, 6> kOrders{
-      {{0, 1, 2}, {0, 2, 1}, {1, 2, 0}, {1, 0, 2}, {2, 0, 1}, {2, 1, 0}}};
-  const auto found = model.values.find("RotationOrder");
-  const double number = found == model.values.end() ? 0 : found->second[0];
-  return number >= 0 && number < 6 ? kOrders[static_cast<std::size_t>(number)] : kOrders[0];
-}
-
 void complete(aiNodeAnim& keys, const std::string& property, const FbxObject& model, const Constants& constants) {
   const auto put = [&](aiVectorKey* key, unsigned count) {
     for (unsigned k = 0; k < count; ++k) {
@@ -74,7 +66,7 @@ void complete(aiNodeAnim& keys, const std::string& property, const FbxObject& mo
   };
   if (property == "Lcl Translation") return put(keys.mPositionKeys, keys.mNumPositionKeys);
   if (property == "Lcl Scaling") return put(keys.mScalingKeys, keys.mNumScalingKeys);
-  const std::array<int, 3> order = order_of(model);
+  const std::array<int, 3> order = rotation_order(model);
   for (unsigned k = 0; k < keys.mNumRotationKeys; ++k) {
     aiQuaternion& q = keys.mRotationKeys[k].mValue;
     Eigen::Vector3d angles = angles_of(order, Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized(), constants);
@@ -93,8 +85,9 @@ void complete(aiNodeAnim& keys, const std::string& property, const FbxObject& mo
 void complete_curves(aiScene& scene, const FbxFile& file) {
   std::map<std::int64_t, const FbxObject*> models, curve_nodes, stacks;
   for (const FbxObject& object : file.objects) {
-    auto& kind = object.kind == FbxKind::kCurves ? curve_nodes : object.kind == FbxKind::kStack ? stacks : models;
-    kind.emplace(object.id, &object);
+    if (object.kind == FbxKind::kModel) models.emplace(object.id, &object);
+    if (object.kind == FbxKind::kCurveNode) curve_nodes.emplace(object.id, &object);
+    if (object.kind == FbxKind::kStack) stacks.emplace(object.id, &object);
   }
   std::map<std::int64_t, std::set<std::string>> curves;  // "d|X" ... of each curve node
   std::multimap<std::int64_t, std::int64_t> above;       // curve node -> layer -> stack

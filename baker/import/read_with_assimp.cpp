@@ -200,7 +200,6 @@ struct ReadFile {
     // Sticks that importers put where a file has bones and no mesh are no character.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
-    FbxFile fbx;
     if (std::string bytes = bytes_of_fbx(path); !bytes.empty()) {
       fbx = read_fbx(bytes);
       names = make_names_unique(bytes, fbx);
@@ -240,6 +239,7 @@ struct ReadFile {
   OwnFiles* files;
   const aiScene* scene = nullptr;
   NamesOfNodes names;
+  FbxFile fbx;  // of an FBX file
 
  private:
   // Bones and clips refer to nodes by one of the two: names that are not unique would lead to wrong nodes.
@@ -278,7 +278,31 @@ void note_lost_files(const ReadFile& read, const std::filesystem::path& folder) 
   lost.note(read.name);
 }
 
-SourceMesh source_of(const aiScene& scene, const AssimpScene& flat, const std::string& name) {
+// Finds the objects of the file that nodes and clips were read from. Assimp has the file's stacks in order, but for
+// those without keys.
+void find_fbx_objects(const AssimpScene& flat, const FbxFile& fbx, SourceRig& rig) {
+  std::map<std::string_view, std::int64_t> models;
+  std::vector<const FbxObject*> stacks;
+  for (const FbxObject& object : fbx.objects) {
+    if (object.kind == FbxKind::kModel) models.emplace(object.name, object.id);
+    if (object.kind == FbxKind::kStack) stacks.push_back(&object);
+  }
+  for (std::size_t n = 0; n < rig.nodes.size(); ++n) {
+    const auto model = models.find(flat.chains[n].back()->mName.C_Str());
+    if (model != models.end()) rig.nodes[n].fbx_id = model->second;
+  }
+  auto from = stacks.begin();
+  for (Clip& clip : rig.clips) {
+    const auto stack = std::find_if(from, stacks.end(), [&](const FbxObject* one) { return one->name == clip.name; });
+    if (stack == stacks.end()) continue;
+    clip.fbx_id = (*stack)->id;
+    from = stack + 1;
+  }
+}
+
+SourceMesh source_of(const ReadFile& read, const AssimpScene& flat) {
+  const aiScene& scene = *read.scene;
+  const std::string& name = read.name;
   SourceMesh out;
   out.importer = "assimp";
   for (const MeshInstance& instance : flat.instances) {
@@ -287,6 +311,7 @@ SourceMesh source_of(const aiScene& scene, const AssimpScene& flat, const std::s
            out);
   }
   out.rig = read_rig(scene, flat, name);
+  find_fbx_objects(flat, read.fbx, out.rig);
   // Formats without units are taken as metres. FBX says its own, in centimetres.
   double centimetres = 0;
   float centimetres_f = 0;
@@ -325,7 +350,7 @@ SourceMesh read_with_assimp(const std::filesystem::path& path, const ImportOptio
   const ReadFile read(path);
   const aiScene& scene = read.scene_or_fail();
   const AssimpScene flat = flatten(scene, read.names, read.name, options.character);
-  SourceMesh out = source_of(scene, flat, read.name);
+  SourceMesh out = source_of(read, flat);
   std::vector<SkinnedBox> skinned;
   for (const MeshInstance& instance : flat.instances) {
     const Index joint = top_joint(flat, *instance.mesh);
@@ -349,7 +374,7 @@ std::string glb_with_assimp(const std::filesystem::path& path) {
   const ReadFile read(path);
   const aiScene& scene = read.scene_or_fail();
   const AssimpScene flat = flatten(scene, read.names, read.name);
-  SourceMesh source = source_of(scene, flat, read.name);
+  SourceMesh source = source_of(read, flat);
   source.look = read_look(scene, flat, path.parent_path());
   return glb_of(scene, flat, source);
 }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct Node {
   bool is_attachment = false;   // carries a rigid mesh, and hangs on a joint: a weapon, a hat
   int parent = -1;              // comes before its children
   int in_file = -1;             // its number in the file, or in what read_as_glb() makes of it
+  std::int64_t fbx_id = 0;      // of its model in an FBX file
   Affine local = Affine::Identity();
   Vec3 translation = Vec3::Zero();
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
@@ -72,7 +74,8 @@ struct Clip {
   std::string name;
   double duration = 0;  // seconds, of the last key
   std::vector<Channel> channels;
-  int in_file = -1;  // its number in the file, or in what read_as_glb() makes of it
+  int in_file = -1;         // its number in the file, or in what read_as_glb() makes of it
+  std::int64_t fbx_id = 0;  // of its stack in an FBX file
 };
 
 // A file's skeleton, skin and motion; all empty where it has none.

@@ -64,6 +64,7 @@ bool is_own_text(const std::string& text, FileKind kind) {
       return is_json || has("Written by spherechain") || has("doc = \"spherechain: colliders of ");
     case FileKind::kGlb:
     case FileKind::kBvh:
+    case FileKind::kFbx:
       break;
   }
   return false;
@@ -87,6 +88,8 @@ const char* kind_text(FileKind kind) {
       return "a GLB file";
     case FileKind::kBvh:
       return "a BVH file";
+    case FileKind::kFbx:
+      return "an FBX file";
     case FileKind::kColliders:
       break;
   }

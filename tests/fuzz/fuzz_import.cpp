@@ -199,10 +199,13 @@ class Campaign {
       for (std::size_t n = random.one_in(3) ? 3 : 1; f == damaged && n > 0; --n) damage(bytes, text, random);
       write_file(folder.path / files[f].filename(), bytes);
     }
-    const fs::path input = folder.path / files[0].filename(), output = folder.path / "out.sphc";
-    const bool bakes = source.bakes && random.one_in(4);
+    const fs::path input = folder.path / files[0].filename();
+    const bool bakes = source.bakes && random.one_in(4),
+               fixes = bakes && input.extension() == ".fbx" && random.one_in(2);
+    const fs::path output = folder.path / (fixes ? "out.fbx" : "out.sphc");
+    const std::string verb = fixes ? "fix" : bakes ? "bake" : "inspect";
     std::vector<std::string> command{tool_, "inspect", "--roles", input.string()};
-    if (bakes) command = {tool_, "bake", input.string(), "-o", output.string()};
+    if (bakes) command = {tool_, verb, input.string(), "-o", output.string()};
     const TemporaryFolder words;
     const Ended ended = run(command, words.path / "error");
     const std::string error = read_file(words.path / "error");
@@ -215,8 +218,7 @@ class Campaign {
     const std::string what = fault(ended, error, bakes, there > files.size());
     if (what.empty()) return;
     ++faults_;
-    std::printf("%s, %s: %s %s\n", label.c_str(), bakes ? "bake" : "inspect", files[0].filename().c_str(),
-                what.c_str());
+    std::printf("%s, %s: %s %s\n", label.c_str(), verb.c_str(), files[0].filename().c_str(), what.c_str());
     std::fflush(stdout);
     if (!keep_.empty()) fs::copy(folder.path, keep_ / label, fs::copy_options::recursive);
   }

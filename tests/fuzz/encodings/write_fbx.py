@@ -403,3 +403,22 @@ def write(scene, folder, draw):
             text = text.replace("\n", "\r\n")
         path.write_bytes(text.encode())
     return path
+
+
+def main():
+    """write_fbx.py FOLDER SEED...: the box man, as run.py draws him with these seeds."""
+    import pathlib
+    import sys
+
+    import man
+    from draw import Draw
+    from vary import vary
+    folder = pathlib.Path(sys.argv[1])
+    for seed in sys.argv[2:]:
+        draw, scene = Draw(int(seed), (), None), man.man()
+        vary(scene, draw, FORM)
+        write(scene, folder, draw).rename(folder / f"man_{seed}.fbx")
+
+
+if __name__ == "__main__":
+    main()

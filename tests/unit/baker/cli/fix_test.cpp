@@ -203,6 +203,29 @@ TEST_CASE("fix: a file of another format is mended as a binary glTF" * doctest::
   CHECK(import_character(out).source_positions == import_character(source).source_positions);
 }
 
+TEST_CASE("fix: an FBX stays one where it is asked for, mended as its GLB is" * doctest::test_suite("long runs")) {
+  const TemporaryFolder folder;
+  const std::string source = "/usr/share/assimp/models/FBX/huesitos.fbx", out = (folder.path / "out.fbx").string();
+  const tool::Run run = tool::run("fix " + source + " -o " + out);
+  CHECK_MESSAGE(run.code == 0, run.error);
+  CHECK(tool::run("check " + out + " -o " + (folder.path / "after").string()).out.find("0 penetrations;") !=
+        std::string::npos);
+  CHECK(tool::contents(out).starts_with("Kaydara FBX Binary"));
+  tool::check_error(tool::run("fix " + source + " -o " + out), 3, {"out.fbx", "--force"});
+}
+
+TEST_CASE("fix: an FBX is written of an FBX alone, and of a whole one") {
+  const TemporaryFolder folder;
+  const std::string source = "/usr/share/assimp/models/FBX/huesitos.fbx", out = (folder.path / "out.fbx").string();
+  const auto glb = folder.write("arm.glb", wall_and_arm({5, 5, 5}));
+  tool::check_error(tool::run("fix " + glb.string() + " -o " + out), 2, {"arm.glb", "no FBX"});
+  tool::check_error(tool::run("fix " + source + " -o " + out + " --motion /usr/share/assimp/models/BVH/01_01.bvh"), 2,
+                    {"out.fbx", "--motion"});
+  const auto cut = folder.write("cut.fbx", tool::contents(source).substr(0, 100000));
+  tool::check_error(tool::run("fix " + cut.string() + " -o " + out), 3, {"cut.fbx", "damaged"});
+  CHECK(!std::filesystem::exists(out));
+}
+
 TEST_CASE("fix: clips of one name have a page each" * doctest::test_suite("long runs")) {
   const TemporaryFolder folder;
   const std::string report = (folder.path / "report").string();
