@@ -15,7 +15,7 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kTurnMin = 1e-6;  // radians
+constexpr double kUnturnedMost = 1e-6;  // radians
 
 class FbxTurner {
  public:
@@ -53,8 +53,8 @@ class FbxTurner {
       for (std::size_t k = 0; k < run.size(); ++k) {
         const std::int64_t tick = run[k];
         const auto [from, to] = turn_at(turned, seconds_of(tick));
-        const bool turns = from.angularDistance(to) > kTurnMin;
-        rotation.set(tick, degrees[k], turns || (degrees[k] - rotation.at(tick)).norm() > kTurnMin);
+        const bool turns = from.angularDistance(to) > kUnturnedMost;
+        rotation.set(tick, degrees[k], turns || (degrees[k] - rotation.at(tick)).norm() > kUnturnedMost);
         // A turn about a pivot would move the joint.
         if (translation) translation->set(tick, translation->at(tick) + from * angles.arm() - to * angles.arm(), turns);
       }
@@ -110,7 +110,7 @@ class FbxTurner {
       std::int64_t before = run.front();
       for (const std::int64_t tick : run) {
         const auto [from, to] = turn_at(turned, seconds_of(tick));
-        const bool is_old = degrees.empty() || from.angularDistance(to) <= kTurnMin;
+        const bool is_old = degrees.empty() || from.angularDistance(to) <= kUnturnedMost;
         Vec3 near = degrees.empty() ? rotation.at(tick) : last;
         if (jumps) near = is_old ? rotation.at(tick) : Vec3(last + rotation.at(tick) - rotation.at(before));
         degrees.push_back(angles.degrees(to, near));
@@ -159,7 +159,7 @@ class FbxTurner {
       for (; f < count && (is_open(f - 1) || is_open(f) || is_open(f + 1)); ++f) {
         const double seconds = f / fps_;
         const auto [from, to] = turn_at(turned, seconds);
-        turns = turns || from.angularDistance(to) > kTurnMin;
+        turns = turns || from.angularDistance(to) > kUnturnedMost;
         const std::int64_t tick = start_ + std::llround(seconds * kFbxTicks);
         const auto near = own.lower_bound(tick - kSnapTicks);
         ticks.insert(near != own.end() && *near <= tick + kSnapTicks ? *near : tick);
