@@ -113,15 +113,20 @@ Acting ActingMeasure::measure(const Turns& turns, Frames frames) {
   for (const TurningJoint& joint : facts_.clip.joints()) {
     out.turns.emplace_back(facts_.clip.rig().nodes[joint.node].name, 0);
   }
-  std::vector<Vec3> last;
+  const auto animated = [&](int f) -> const std::vector<Vec3>& {
+    std::vector<Vec3>& out = animated_[f];
+    if (out.empty()) out = places(f, std::vector<Vec3>(count, Vec3::Zero()));
+    return out;
+  };
+  std::vector<Vec3> last;  // as `moved`, of the frame before
+  bool was_turned = false;
   for (int f = std::max(0, frames.from - 1); f <= frames.to; ++f) {
     const std::vector<Vec3> turned = facts_.clip.turns_at(f, turns);
     std::vector<Vec3> moved(ends_.size() + count, Vec3::Zero());
-    if (std::any_of(turned.begin(), turned.end(), [](const Vec3& turn) { return !turn.isZero(0); })) {
-      std::vector<Vec3>& animated = animated_[f];
-      if (animated.empty()) animated = places(f, std::vector<Vec3>(count, Vec3::Zero()));
+    const bool is_turned = std::any_of(turned.begin(), turned.end(), [](const Vec3& turn) { return !turn.isZero(0); });
+    if (is_turned) {
       moved = places(f, turned);
-      for (std::size_t i = 0; i < moved.size(); ++i) moved[i] -= animated[i];
+      for (std::size_t i = 0; i < moved.size(); ++i) moved[i] -= animated(f)[i];
     }
     for (std::size_t e = 0; e < ends_.size() && f >= frames.from; ++e) {
       out.moves_mm[e].second = std::max(out.moves_mm[e].second, facts_.mm * moved[e].norm());
@@ -129,10 +134,13 @@ Acting ActingMeasure::measure(const Turns& turns, Frames frames) {
     for (std::size_t j = 0; j < count && f >= frames.from; ++j) {
       out.turns[j].second = std::max(out.turns[j].second, to_degrees(turned[j].norm()));
     }
-    for (std::size_t i = 0; i < last.size(); ++i) {
-      out.step_percent = std::max(out.step_percent, 100 * (moved[i] - last[i]).norm() / facts_.height);
+    for (std::size_t i = 0; i < last.size() && (is_turned || was_turned); ++i) {
+      const Vec3 own = animated(f)[i] - animated(f - 1)[i];
+      const double longer = (own + moved[i] - last[i]).norm() - own.norm();
+      out.step_percent = std::max(out.step_percent, 100 * longer / facts_.height);
     }
     last = std::move(moved);
+    was_turned = is_turned;
   }
   largest_first(out.moves_mm, kMoveMin * facts_.height * facts_.mm);
   largest_first(out.turns, kTurnMin);

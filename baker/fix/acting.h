@@ -20,7 +20,7 @@ struct Acting {
   int from = 0, to = 0;                                  // these frames
   std::vector<std::pair<std::string, double>> moves_mm;  // of head, hands and feet: the largest move; largest first
   std::vector<std::pair<std::string, double>> turns;     // by joint, in degrees: the largest turn; largest first
-  // The largest change of the displacement from one frame to the next, of an end or a joint, in % of the height.
+  // How much further than before an end or a joint goes from one frame to the next, at most, in % of the height.
   double step_percent = 0;
   ActingVerdict verdict = ActingVerdict::kUnchanged;
 

@@ -13,12 +13,13 @@ namespace {
 constexpr double kShaky = 1.5;        // ratio of the jerk to that of the source clip
 constexpr double kCalm = 5;           // heights per second^3: an invisible jerk
 constexpr double kMovedAtAll = 2e-3;  // heights
-constexpr double kStepMost = 0.009;   // heights that a joint's end moves in a frame against the source clip
-constexpr double kJump = 0.1;         // the same of the clip itself, where it cuts: more is not seen there
-constexpr double kTip = 0.06;         // heights from a wrist to the middle of its hand
-constexpr double kSpread = 0.02;      // radians a frame: the slope of turns that are spread
-constexpr int kSmoothings = 4;        // with a Gaussian of 1, 2, 4, ... frames
-constexpr int kFadeSteps = 10;        // to this share each, then to nothing
+constexpr double kStepMost = 0.009;   // heights that a joint's end goes further in a frame than before
+constexpr double kStepShare = 0.45;   // of its own step: a turned arm moves another way
+constexpr double kCut = 0.1;      // heights: where the clip itself steps further, it is cut, and all is seen as that
+constexpr double kTip = 0.06;     // heights from a wrist to the middle of its hand
+constexpr double kSpread = 0.02;  // radians a frame: the slope of turns that are spread
+constexpr int kSmoothings = 8;    // with a Gaussian of 1, 2, 4, ... frames
+constexpr int kFadeSteps = 10;    // to this share each, then to nothing
 constexpr double kFade = 0.85;
 
 // 1 in the marked frames, falling to 0 within `frames` of them.
@@ -112,8 +113,10 @@ MarkedTurns shaking_turns(const TurnedClip& clip, const Turns& turns, double hei
     std::vector<char> marked(frames, 0);
     for (std::size_t f = 1; f < frames; ++f) {
       const Vec3 moved = at(1, f) - at(0, f);
-      const double own = (at(0, f) - at(0, f - 1)).norm(), more = (moved - (at(1, f - 1) - at(0, f - 1))).norm();
-      if (more > (own > kJump * height ? own : kStepMost * height)) marked[f] = marked[f - 1] = 1;
+      const Vec3 own = at(0, f) - at(0, f - 1), now = at(1, f) - at(1, f - 1);
+      const double most = kStepMost * height, cut = own.norm() > kCut * height ? own.norm() : 0;
+      const bool is_longer = now.norm() - own.norm() > std::max(most, cut);
+      if (is_longer || (now - own).norm() > std::max(most, kStepShare * own.norm())) marked[f] = marked[f - 1] = 1;
       if (f < 3 || moved.norm() < kMovedAtAll * height) continue;
       for (std::size_t k = 0; k < 2; ++k) {
         jerks[f][k] = (at(k, f) - 3 * at(k, f - 1) + 3 * at(k, f - 2) - at(k, f - 3)).norm();
@@ -145,8 +148,8 @@ void calm_turns(const TurnedClip& clip, double height, bool loops, Turns& turns)
         fade_out(clip, joint, marked, kWindowPad, attempt == kSmoothings + kFadeSteps ? 0 : kFade, loops, turns);
         continue;
       }
-      spread(clip, joint, shares_around(marked, 4 * pad, loops), kSpread / (1 << attempt), turns);
-      smooth(clip, joint, shares_around(marked, 2 * pad, loops), 1 << attempt, loops, turns);
+      spread(clip, joint, shares_around(marked, 4 * pad, loops), kSpread / (1 + attempt), turns);
+      smooth(clip, joint, shares_around(marked, pad, loops), 1 + 0.5 * attempt, loops, turns);
     }
     shaking = shaking_turns(clip, turns, height);
   }

@@ -77,7 +77,7 @@ TEST_CASE("fix: it says how far the pose moves, as the two files have it") {
   double most = 0, step = 0;
   for (std::size_t f = 0; f < kSwingFrames; ++f) {
     most = std::max(most, (after[f] - before[f]).norm());
-    if (f > 0) step = std::max(step, (after[f] - before[f] - after[f - 1] + before[f - 1]).norm());
+    if (f > 0) step = std::max(step, (after[f] - after[f - 1]).norm() - (before[f] - before[f - 1]).norm());
   }
   CHECK(most > 20);
   const json& acting = fixer.report["acting"];
