@@ -104,7 +104,8 @@ class SkinPlayer {
   BodyDef def_;
   Body body_;
   sc_pose pose_{};
-  std::vector<Penetration> found_, faults_, before_, before_with_;  // before: of the last of these, alone and with another
+  std::vector<Penetration> found_, faults_, before_,
+      before_with_;  // before: of the last of these, alone and with another
 };
 
 }  // namespace spherechain::baker

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <regex>
 
 #include "human.h"
 
@@ -27,7 +28,11 @@ Run run(const std::string& arguments, const std::string& environment) {
   // Redirections first, so that those in `arguments` go before them.
   const int status = std::system(
       fmt::format(">{} 2>{} {} {} {}", out.string(), error.string(), environment, SPHERECHAIN_TOOL, arguments).c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(out), contents(error)};
+  // On a busy machine a command takes more than ten seconds, and says how far it is.
+  static const std::regex kProgress(
+      "spherechain: ((bake|check|export|filter|fix|mask|play|validate|view)[: ]|[^\n]*: between frames:)[^\n]*\n");
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(out),
+          std::regex_replace(contents(error), kProgress, "")};
 }
 
 void check_error(const Run& run, int code, const std::vector<std::string>& parts) {
