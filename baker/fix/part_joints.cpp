@@ -9,7 +9,7 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kCheap = 2.1, kDear = 4.1;  // times the cheapest
+constexpr double kCheap = 2.1;  // times the cheapest
 
 }  // namespace
 
@@ -37,7 +37,9 @@ std::set<Index> PartJoints::cheap(std::uint32_t a, std::uint32_t b, double most,
   return out;
 }
 
-std::set<Index> PartJoints::parting(std::uint32_t a, std::uint32_t b) const { return cheap(a, b, kDear, {}); }
+std::set<Index> PartJoints::parting(std::uint32_t a, std::uint32_t b, double most) const {
+  return cheap(a, b, most, {});
+}
 
 std::set<Index> PartJoints::between(std::uint32_t a, std::uint32_t b) const { return cheap(a, b, kCheap, held_); }
 

@@ -18,9 +18,9 @@ class PartJoints {
   PartJoints(const AnimatedAsset& animated, const TurnedClip& clip, const std::vector<Index>& feet);
 
   const std::vector<Index>& above(std::uint32_t part) const { return above_[part]; }
-  // Joints that move only one of the two parts, and are not far dearer than the cheapest of them: the trunk does not
+  // Joints that move only one of the two parts, and cost at most so many times the cheapest of them: the trunk does not
   // move for an arm.
-  std::set<Index> parting(std::uint32_t a, std::uint32_t b) const;
+  std::set<Index> parting(std::uint32_t a, std::uint32_t b, double most = 4.1) const;
   // The cheap ones among them. Joints above a foot are left out.
   std::set<Index> between(std::uint32_t a, std::uint32_t b) const;
   // Marks each part that one of these joints moves.

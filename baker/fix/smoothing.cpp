@@ -14,12 +14,11 @@ constexpr double kShaky = 1.5;        // ratio of the jerk to that of the source
 constexpr double kCalm = 5;           // heights per second^3: an invisible jerk
 constexpr double kMovedAtAll = 2e-3;  // heights
 constexpr double kStepMost = 0.009;   // heights that a joint's end goes further in a frame than before
-constexpr double kStepShare = 0.45;   // of its own step: a turned arm moves another way
-constexpr double kCut = 0.1;      // heights: where the clip itself steps further, it is cut, and all is seen as that
-constexpr double kTip = 0.06;     // heights from a wrist to the middle of its hand
-constexpr double kSpread = 0.02;  // radians a frame: the slope of turns that are spread
-constexpr int kSmoothings = 8;    // with a Gaussian of 1, 2, 4, ... frames
-constexpr int kFadeSteps = 10;    // to this share each, then to nothing
+constexpr double kStepShare = 0.15;   // of its own step: where the clip is fast or cut, more is not seen
+constexpr double kTip = 0.06;         // heights from a wrist to the middle of its hand
+constexpr double kSpread = 0.02;      // radians a frame: the slope of turns that are spread
+constexpr int kSmoothings = 8;        // with a Gaussian of 1, 2, 4, ... frames
+constexpr int kFadeSteps = 10;        // to this share each, then to nothing
 constexpr double kFade = 0.85;
 
 // 1 in the marked frames, falling to 0 within `frames` of them.
@@ -114,9 +113,8 @@ MarkedTurns shaking_turns(const TurnedClip& clip, const Turns& turns, double hei
     for (std::size_t f = 1; f < frames; ++f) {
       const Vec3 moved = at(1, f) - at(0, f);
       const Vec3 own = at(0, f) - at(0, f - 1), now = at(1, f) - at(1, f - 1);
-      const double most = kStepMost * height, cut = own.norm() > kCut * height ? own.norm() : 0;
-      const bool is_longer = now.norm() - own.norm() > std::max(most, cut);
-      if (is_longer || (now - own).norm() > std::max(most, kStepShare * own.norm())) marked[f] = marked[f - 1] = 1;
+      const double most = std::max(kStepMost * height, kStepShare * own.norm());
+      if (now.norm() - own.norm() > most) marked[f] = marked[f - 1] = 1;
       if (f < 3 || moved.norm() < kMovedAtAll * height) continue;
       for (std::size_t k = 0; k < 2; ++k) {
         jerks[f][k] = (at(k, f) - 3 * at(k, f - 1) + 3 * at(k, f - 2) - at(k, f - 3)).norm();

@@ -18,7 +18,8 @@ constexpr int kHalfTries = 2;  // tries to halve the turns that made something w
 constexpr int kTries = 10;     // in all, in ever wider windows
 constexpr double kFootMoves = 1e-3, kFootTurns = 5e-3;  // heights; a share of the axes' size
 constexpr double kWorth = 3;                            // times the depth that is added: so much less is worth it
-constexpr double kWidest = 4;                           // times kWindowPad
+constexpr double kFadeSeconds = 0.5;                    // a faster fade is a step
+constexpr double kWidest = 3;                           // times that
 
 // Sums of the fault depths of parts that are moved, by frame.
 struct Depths {
@@ -42,17 +43,25 @@ void mark(MarkedTurns& failed, Index joint, std::size_t frame, std::size_t frame
   failed.try_emplace(joint, frames, 0).first->second[frame] = 1;
 }
 
+bool is_any_turned(const MendState& state, const std::set<Index>& joints, double frame) {
+  const std::vector<Vec3> turns = state.facts.clip.turns_at(frame, state.turns);
+  return std::any_of(joints.begin(), joints.end(), [&](Index joint) { return !turns[joint].isZero(0); });
+}
+
 // Turns fail if a part that they move got worse than before, unless the parts that they move got far better in all.
+// Faults between frames where nothing turns are the source's own.
 void add_worse(const MendState& state, const std::vector<PosePenetration>& found, MarkedTurns& failed) {
   for (const PosePenetration& one : found) {
     const double by = state.goals.worse_by(one);
     if (by == 0) continue;
-    const std::set<Index> joints = state.facts.parts.parting(one.found.part, one.found.other);
+    const std::set<Index> joints = state.facts.parts.parting(one.found.part, one.found.other, HUGE_VAL);
+    if (!is_any_turned(state, joints, one.frame)) continue;
     const Depths depths = depths_of(state, state.facts.parts.moved_by(joints), found);
     const auto frame = static_cast<std::size_t>(one.frame);
     if (depths.before[frame] - depths.after[frame] > kWorth * by) continue;
-    for (const std::uint32_t part : {one.found.part, one.found.other}) {
-      for (const Index joint : state.facts.parts.above(part)) mark(failed, joint, frame, state.in_window.size());
+    for (const Index joint : joints) {
+      mark(failed, joint, frame, state.in_window.size());
+      mark(failed, joint, static_cast<std::size_t>(std::ceil(one.frame)), state.in_window.size());
     }
   }
 }
@@ -120,7 +129,7 @@ void take_back_failed_turns(MendState& state) {
     if (failed.empty() && attempt > kHalfTries) return;
     if (attempt == kTries) return remove_all(state, failed);
     state.report(fmt::format("taking back what makes it worse, {} of {}", attempt, kTries));
-    const double seconds = kWindowPad * std::pow(kWidest, attempt / double{kTries});
+    const double seconds = kFadeSeconds * std::pow(kWidest, attempt / double{kTries});
     for (const auto& [joint, frames] : failed) {
       fade_out(state.facts.clip, joint, frames, seconds, attempt <= kHalfTries ? 0.5 : 0, state.facts.loops,
                state.turns);
