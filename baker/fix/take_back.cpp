@@ -18,8 +18,9 @@ constexpr int kHalfTries = 2;  // tries to halve the turns that made something w
 constexpr int kTries = 10;     // in all, in ever wider windows
 constexpr double kFootMoves = 1e-3, kFootTurns = 5e-3;  // heights; a share of the axes' size
 constexpr double kWorth = 3;                            // times the depth that is added: so much less is worth it
-constexpr double kFadeSeconds = 0.5;                    // a faster fade is a step
-constexpr double kWidest = 3;                           // times that
+constexpr double kLargeTurn = to_radians(25);
+constexpr double kFadeSeconds = 0.5;  // a faster fade is a step
+constexpr double kWidest = 3;         // times that
 
 // Sums of the fault depths of parts that are moved, by frame.
 struct Depths {
@@ -119,6 +120,14 @@ void remove_all(MendState& state, const MarkedTurns& failed) {
   }
 }
 
+double largest_turn(const MendState& state, Index joint, const std::vector<char>& frames) {
+  double most = 0;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    if (frames[f] != 0) most = std::max(most, state.turns[f * state.facts.clip.count() + joint].norm());
+  }
+  return most;
+}
+
 void take_back_failed_turns(MendState& state) {
   for (int attempt = 1; attempt <= kTries; ++attempt) {
     const std::vector<PosePenetration> found = look_again(state);
@@ -131,7 +140,8 @@ void take_back_failed_turns(MendState& state) {
     state.report(fmt::format("taking back what makes it worse, {} of {}", attempt, kTries));
     const double seconds = kFadeSeconds * std::pow(kWidest, attempt / double{kTries});
     for (const auto& [joint, frames] : failed) {
-      fade_out(state.facts.clip, joint, frames, seconds, attempt <= kHalfTries ? 0.5 : 0, state.facts.loops,
+      const double share = std::clamp(largest_turn(state, joint, frames) / kLargeTurn, 0.3, 1.0);
+      fade_out(state.facts.clip, joint, frames, share * seconds, attempt <= kHalfTries ? 0.5 : 0, state.facts.loops,
                state.turns);
     }
   }
