@@ -54,7 +54,7 @@ Pages write_pages(const FixOptions& options, const fs::path& page, const FixedCh
     if (!has_page(fixed.clips[i].mend)) continue;
     for (std::optional<AnimatedAsset>* one : {&before, &after}) {
       if (!*one)
-        one->emplace(OpenAsset(fixed.asset, options.input), options.input, options.input, MotionChoice(),
+        one->emplace(OpenAsset(fixed.asset, options.input), options.input, fixed.source.file, MotionChoice(),
                      FrameChoice());
     }
     before->play_clip(fixed.before[i], {0, 0});

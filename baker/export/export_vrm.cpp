@@ -9,7 +9,7 @@
 
 #include "baker/export/formats.h"
 #include "baker/export/glb_json.h"
-#include "baker/export/rest_nodes.h"
+#include "baker/import/rest_nodes.h"
 #include "baker/export/simple_volumes.h"
 #include "baker/mesh/decompose.h"
 #include "baker/mesh/error.h"

@@ -73,11 +73,6 @@ ordered_json& array_in(ordered_json& object, const std::string& name) {
   return out;
 }
 
-const ordered_json& entry_of(const ordered_json& object, const std::string& name) {
-  static const ordered_json kNull;
-  return object.is_object() && object.contains(name) ? object[name] : kNull;
-}
-
 bool is_own(const ordered_json& thing) {
   const ordered_json& name = entry_of(thing, "name");
   return name.is_string() && name.get_ref<const std::string&>().starts_with(kOwnName);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "baker/import/glb_file.h"
+
 // Changes the JSON of an existing GLB. Every other byte stays.
 namespace spherechain::baker {
 
@@ -21,9 +23,6 @@ void drop_extension(nlohmann::ordered_json& json, const std::string& name);
 
 // An object's array, which is made where it is missing. Then references to the object's other members are void.
 nlohmann::ordered_json& array_in(nlohmann::ordered_json& object, const std::string& name);
-
-// The entry of an object, or null.
-const nlohmann::ordered_json& entry_of(const nlohmann::ordered_json& object, const std::string& name);
 
 // True if this tool made a thing: its name begins with kOwnName.
 inline constexpr const char* kOwnName = "spherechain ";

@@ -114,9 +114,9 @@ Acting ActingMeasure::measure(const Turns& turns, Frames frames) {
     out.turns.emplace_back(facts_.clip.rig().nodes[joint.node].name, 0);
   }
   const auto animated = [&](int f) -> const std::vector<Vec3>& {
-    std::vector<Vec3>& out = animated_[f];
-    if (out.empty()) out = places(f, std::vector<Vec3>(count, Vec3::Zero()));
-    return out;
+    std::vector<Vec3>& known = animated_[f];
+    if (known.empty()) known = places(f, std::vector<Vec3>(count, Vec3::Zero()));
+    return known;
   };
   std::vector<Vec3> last;  // as `moved`, of the frame before
   bool was_turned = false;
@@ -125,8 +125,9 @@ Acting ActingMeasure::measure(const Turns& turns, Frames frames) {
     std::vector<Vec3> moved(ends_.size() + count, Vec3::Zero());
     const bool is_turned = std::any_of(turned.begin(), turned.end(), [](const Vec3& turn) { return !turn.isZero(0); });
     if (is_turned) {
+      const std::vector<Vec3>& own = animated(f);
       moved = places(f, turned);
-      for (std::size_t i = 0; i < moved.size(); ++i) moved[i] -= animated(f)[i];
+      for (std::size_t i = 0; i < moved.size(); ++i) moved[i] -= own[i];
     }
     for (std::size_t e = 0; e < ends_.size() && f >= frames.from; ++e) {
       out.moves_mm[e].second = std::max(out.moves_mm[e].second, facts_.mm * moved[e].norm());
@@ -134,8 +135,10 @@ Acting ActingMeasure::measure(const Turns& turns, Frames frames) {
     for (std::size_t j = 0; j < count && f >= frames.from; ++j) {
       out.turns[j].second = std::max(out.turns[j].second, to_degrees(turned[j].norm()));
     }
-    for (std::size_t i = 0; i < last.size() && (is_turned || was_turned); ++i) {
-      const Vec3 own = animated(f)[i] - animated(f - 1)[i];
+    const bool may_step = !last.empty() && (is_turned || was_turned);
+    const std::vector<Vec3> none, &here = may_step ? animated(f) : none, &before = may_step ? animated(f - 1) : none;
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      const Vec3 own = here[i] - before[i];
       const double longer = (own + moved[i] - last[i]).norm() - own.norm();
       out.step_percent = std::max(out.step_percent, 100 * longer / facts_.height);
     }

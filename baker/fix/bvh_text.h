@@ -22,7 +22,7 @@ class BvhText {
 
   // True if the joint has three rotation channels, which can express any rotation.
   static bool turns_freely(const BvhJoint& joint);
-  // The joint must turn freely for these.
+  // Rotations can be asked for and set where a joint turns freely.
   Eigen::Quaterniond rotation(int frame, const BvhJoint& joint) const;
   // Frames must come in ascending order. Among the angles that give this rotation,
   // takes those that continue the previous frame as the file's own angles do.

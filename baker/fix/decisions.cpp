@@ -239,19 +239,24 @@ class Refuser {
     std::erase_if(found, [](const PosePenetration& one) { return !is_fault(one.found.kind); });
     measure_events(found);
     mend_.compared = compare(facts_.clip, mend_.turns, facts_.feet, facts_.wrists, facts_.mm);
+    std::vector<FramePenetration> fresh;
     mend_.volume_after = 0;
     for (const PosePenetration& one : found) {
-      const bool is_whole = one.frame == std::floor(one.frame);
       const bool is_mended = std::any_of(mend_.events.begin(), mend_.events.end(), [&](const MendedEvent& event) {
         return event.outcome != MendOutcome::kFold && event.outcome != MendOutcome::kAccepted && is_of(event, one);
       });
-      if (is_whole && is_mended) {
+      if (!is_between(one.frame) && is_mended) {
         mend_.volume_after += finder.volume(one.frame, one.found, mend_.turns) * std::pow(facts_.mm / 10, 3);
       }
       const bool is_known = std::any_of(mend_.events.begin(), mend_.events.end(),
                                         [&](const MendedEvent& event) { return is_of(event, one); });
       const double depth_mm = facts_.mm * double{one.found.measures.depth};
-      if (!is_known && depth_mm > kDeeperMax) add_new(one, depth_mm, out.new_faults);
+      if (!is_known && depth_mm > kDeeperMax) fresh.push_back({static_cast<int>(one.frame), one.found});
+    }
+    std::stable_sort(fresh.begin(), fresh.end(), [](const auto& a, const auto& b) { return a.frame < b.frame; });
+    const BodyParts parts = body_parts_of(facts_.animated.asset());
+    for (const EventSpan& span : join_events(fresh, facts_.clip.frames(), false)) {
+      out.new_faults.push_back(event_of(span, fresh, parts.parts, facts_.mm));
     }
   }
 
@@ -269,25 +274,6 @@ class Refuser {
         event.turn_degrees = std::max(event.turn_degrees, to_degrees(mend_.turns[i].norm()));
       }
     }
-  }
-
-  void add_new(const PosePenetration& one, double depth_mm, std::vector<Event>& faults) const {
-    const BodyParts parts = body_parts_of(facts_.animated.asset());
-    const std::array<std::string, 2> names{parts.parts[one.found.part].name, parts.parts[one.found.other].name};
-    for (Event& fault : faults) {
-      if (!are_same(fault.parts, names) || one.frame > fault.to + 1 || one.frame < fault.from - 1) continue;
-      fault.from = std::min(fault.from, std::floor(one.frame));
-      fault.to = std::max(fault.to, std::ceil(one.frame));
-      fault.depth_mm = std::max(fault.depth_mm, depth_mm);
-      return;
-    }
-    Event fault;
-    fault.parts = names;
-    fault.kind = one.found.kind;
-    fault.from = std::floor(one.frame);
-    fault.to = std::ceil(one.frame);
-    fault.depth_mm = depth_mm;
-    faults.push_back(std::move(fault));
   }
 
   const ClipFacts& facts_;

@@ -29,8 +29,7 @@ std::vector<Decision> read_decisions(const std::string& file);
 struct Refusals {
   // By event: those that keep a refused one's joints turned in some of its frames.
   std::vector<std::vector<std::size_t>> held_by;
-  // Faults that the source clip does not have, and that the accepted turns alone cause. Only the parts, the frames and
-  // the depth in mm are set.
+  // Faults that the source clip does not have, and that the accepted turns alone cause: as event_of() has them.
   std::vector<Event> new_faults;
 };
 

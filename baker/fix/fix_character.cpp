@@ -10,13 +10,16 @@
 #include <set>
 
 #include "baker/check/run.h"
+#include "baker/fix/rigged_glb.h"
 #include "baker/fix/turned_fbx.h"
 #include "baker/fix/turned_recording.h"
 #include "baker/fix/write_clip.h"
+#include "baker/import/notes.h"
 #include "baker/mesh/error.h"
 #include "baker/mesh/utf8.h"
 #include "baker/motion/carried_motion.h"
 #include "baker/motion/frame_times.h"
+#include "baker/os/written_file.h"
 #include "baker/pipeline/pipeline.h"
 
 namespace spherechain::baker {
@@ -48,11 +51,13 @@ Clip with_rotations(Clip clip, const std::vector<Channel>& channels) {
 class Fixer {
  public:
   // `bytes`: the character's file, where that is written.
-  Fixer(const FixJob& job, std::string bytes, const Bake& baked, const std::function<void(const std::string&)>& report)
+  Fixer(const FixJob& job, RiggedSource source, std::string bytes, const Bake& baked,
+        const std::function<void(const std::string&)>& report)
       : job_(job), roles_(baked.roles), report_(report), is_used_(job.decisions.size(), 0) {
+    out_.source = std::move(source);
     out_.bytes = std::move(bytes);
     out_.asset.assign(reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size());
-    animated_.emplace(OpenAsset(out_.asset, job.input), job.input, job.input, MotionChoice{{}, job.clip, {}},
+    animated_.emplace(OpenAsset(out_.asset, job.input), job.input, out_.source.file, MotionChoice{{}, job.clip, {}},
                       FrameChoice{0, 0});
     parts_ = body_parts_of(animated_->asset()).parts;
     const auto is_part = [&](const std::string& name) {
@@ -187,8 +192,8 @@ class Fixer {
     MendOptions options = job_.mend;
     options.is_soft_parted = !job_.parts.empty();  // who names a part means it
     const auto report = [&](const std::string& doing) { report_(clip_line(clip.name) + doing); };
-    MendedClip mended{clip.name, mend_clip(*animated_, roles, clip, options, leave, report)};
     const ClipFacts facts = clip_facts(*animated_, roles, clip, options);
+    MendedClip mended{clip.name, mend_clip(facts, leave, report)};
     decide(facts, report, mended);
     leave_out_others(mended);
     report("comparing");
@@ -280,12 +285,23 @@ FixedCharacter fix_character(const FixJob& job, const std::function<void(const s
   } else if (!job.is_recording_written) {
     bytes = read_as_glb(job.input);
   }
-  const Bake baked = bake(job.input, job.config.bake, report);
-  return Fixer(job, std::move(bytes), baked, report).run();
+  Bake baked = bake(job.input, job.config.bake, report);
+  RiggedSource source{job.input, nullptr};
+  if (!job.recordings.empty() && baked.character.rig.bones.empty()) {
+    bytes = rigged_glb(job.is_recording_written ? read_as_glb(job.input) : bytes, job.input, baked);
+    source.folder = std::make_shared<WorkFolder>(fs::temp_directory_path());
+    source.file = (source.folder->path() / fs::path(job.input).stem()).string() + ".glb";
+    write_atomically(source.file, bytes);
+    const std::vector<std::string> said = take_notes();  // the same that it says now
+    baked = bake(source.file, job.config.bake, report);
+    take_notes();
+    for (const std::string& note : said) add_note(note);
+  }
+  return Fixer(job, std::move(source), std::move(bytes), baked, report).run();
 }
 
 double carried_over_again(const FixedCharacter& fixed, const std::string& input, const std::string& recording) {
-  const AnimatedAsset animated(OpenAsset(fixed.asset, input), input, input, {}, {});
+  const AnimatedAsset animated(OpenAsset(fixed.asset, input), input, fixed.source.file, {}, {});
   const Character& character = animated.character();
   const SourceRig& rig = character.rig;
   const auto carried = carried_motion(recording, rig, character.source_positions, animated.frame(), input);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "baker/check/baseline.h"
 #include "baker/check/rules.h"
 #include "baker/fix/fix_report.h"
+#include "baker/os/work_folder.h"
 
 namespace spherechain::baker {
 
@@ -27,7 +29,15 @@ struct FixJob {
   MendOptions mend;
 };
 
+// The file whose bones move the character. It is the input, or where that has none and a recording moves it, a copy of
+// it with the automatic rig, which lies in `folder`.
+struct RiggedSource {
+  std::string file;
+  std::shared_ptr<WorkFolder> folder;
+};
+
 struct FixedCharacter {
+  RiggedSource source;
   std::string bytes;  // the fixed file: the character's, or the recording's
   std::vector<MendedClip> clips;
   std::vector<Clip> before, after;         // the same clips in full

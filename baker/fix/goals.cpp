@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "baker/bind/part_names.h"
 #include "baker/events/join_events.h"
 
 namespace spherechain::baker {
@@ -25,9 +26,9 @@ bool may_fold(const Penetration& found) {
 
 // Belly, chest, hips and thighs of one skin: flesh that lies on flesh.
 bool are_soft(const std::vector<BodyPart>& parts, const Penetration& found) {
-  constexpr std::uint8_t kTrunk = 0, kThigh = 3;  // mobilities
   const auto is_soft = [&](std::uint32_t part) {
-    return parts[part].mobility == kTrunk || parts[part].mobility == kThigh;
+    const int mobility = parts[part].mobility;
+    return mobility == mobility_of("torso") || mobility == mobility_of("thigh");
   };
   return found.measures.is_one_piece != 0 && is_soft(found.part) && is_soft(found.other);
 }
@@ -37,6 +38,19 @@ double allowed_fold(const Penetration& found) {
 }
 
 }  // namespace
+
+Event event_of(const EventSpan& span, const std::vector<FramePenetration>& faults, const std::vector<BodyPart>& parts,
+               double mm_per_unit) {
+  const auto& [frame, worst] = faults[span.deepest];
+  Event out;
+  out.parts = {parts[worst.part].name, parts[worst.other].name};
+  out.kind = worst.kind;
+  out.from = span.from;
+  out.to = span.to;
+  out.deepest = frame;
+  out.depth_mm = mm_per_unit * double{worst.measures.depth};
+  return out;
+}
 
 Goals goals_of(const std::vector<PosePenetration>& before, const std::vector<PosePenetration>& sequence, int frames,
                const std::vector<BodyPart>& parts, double mm_per_unit, const MendOptions& options,
@@ -50,13 +64,7 @@ Goals goals_of(const std::vector<PosePenetration>& before, const std::vector<Pos
   std::vector<WorkingEvent> events;
   for (const EventSpan& span : join_events(faults, frames, false)) {
     const Penetration& worst = faults[span.deepest].found;
-    Event found;
-    found.parts = {parts[worst.part].name, parts[worst.other].name};
-    found.kind = worst.kind;
-    found.from = span.from;
-    found.to = span.to;
-    found.deepest = faults[span.deepest].frame;
-    found.depth_mm = mm_per_unit * double{worst.measures.depth};
+    Event found = event_of(span, faults, parts, mm_per_unit);
     const bool is_fold = worst.part == worst.other || (!options.is_soft_parted && are_soft(parts, worst)) ||
                          std::all_of(span.penetrations.begin(), span.penetrations.end(),
                                      [&](std::size_t i) { return faults[i].found.kind == SC_CLASS_DEEP_FOLD; });
@@ -64,8 +72,22 @@ Goals goals_of(const std::vector<PosePenetration>& before, const std::vector<Pos
                                : is_fold    ? WorkingState::kFold
                                             : WorkingState::kOpen;
     events.push_back({std::move(found), worst.part, worst.other, state});
+    for (const auto& [place, penetration] : at) {
+      const bool counts = events.back().contains(place) && is_fault(penetration.kind);
+      events.back().depths_before += counts ? mm_per_unit * double{penetration.measures.depth} : 0;
+    }
   }
   return {std::move(events), std::move(at), mm_per_unit, options.margin_mm};
+}
+
+bool Goals::is_left_alone(std::uint32_t part, std::uint32_t other) const {
+  bool is_one = false, are_all = true;
+  for (const WorkingEvent& event : events) {
+    if (event.part != part || event.other != other) continue;
+    is_one = true;
+    are_all &= event.is_left_alone();
+  }
+  return is_one && are_all;
 }
 
 bool Goals::has_open_events() const {
@@ -86,14 +108,15 @@ const WorkingEvent* Goals::event_at(const PenetrationKey& place) const {
 double Goals::allowed(const PosePenetration& penetration) const {
   const double apart = -margin_mm_ / mm_;
   const WorkingEvent* event = event_at(place_of(penetration));
+  const Penetration* known = before({std::round(penetration.frame), penetration.found.part, penetration.found.other});
   if (event == nullptr) {
-    const bool is_new =
-        penetration.found.kind >= SC_CLASS_PENETRATION && penetration.found.part != penetration.found.other;
-    if (is_new) return apart;
+    const Penetration& found = penetration.found;
+    // To a strict eye events are longer. That holds for those that are left alone, too.
+    const bool stays = known != nullptr && is_fault(known->kind) && is_left_alone(found.part, found.other);
+    if (!stays && found.kind >= SC_CLASS_PENETRATION && found.part != found.other) return apart;
   } else if (event->is_open() && penetration.frame >= event->found.from && penetration.frame <= event->found.to) {
     return may_fold(penetration.found) ? allowed_fold(penetration.found) : apart;
   }
-  const Penetration* known = before({std::round(penetration.frame), penetration.found.part, penetration.found.other});
   return known == nullptr ? 0 : double{known->measures.depth};
 }
 

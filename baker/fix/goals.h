@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "baker/bind/body_parts.h"
+#include "baker/events/join_events.h"
 #include "baker/fix/find_faults.h"
-#include "baker/fix/mend_options.h"
+#include "baker/fix/mend.h"
 #include "baker/fix/separations.h"
 #include "baker/fix/working_event.h"
 
@@ -47,9 +48,16 @@ class Goals {
   std::set<std::pair<std::uint32_t, std::uint32_t>> harmless() const;
 
  private:
+  // True if the two parts have events, and all are left alone.
+  bool is_left_alone(std::uint32_t part, std::uint32_t other) const;
+
   double mm_, margin_mm_;
   std::map<PenetrationKey, Penetration> before_;
 };
+
+// The event of a span of faults. Only the parts, the class, the frames and the depth in mm are set.
+Event event_of(const EventSpan& span, const std::vector<FramePenetration>& faults, const std::vector<BodyPart>& parts,
+               double mm_per_unit);
 
 // Joins the penetrations of a source clip to events. `before`: in all of its frames, strictly; `sequence`: as `check`
 // finds them. `leave` returns true for events that must stay as they are.

@@ -2,9 +2,9 @@
 #include "baker/fix/look.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
+#include "baker/events/join_events.h"
 #include "baker/fix/time_windows.h"
 
 namespace spherechain::baker {
@@ -36,7 +36,7 @@ double add_separations(MendState& state, const std::vector<PosePenetration>& fou
     const PenetrationKey place = place_of(penetration);
     const Penetration* before = state.goals.before(place);
     const bool is_shallow = before != nullptr && state.facts.mm * double{before->measures.depth} <= kShallowMax;
-    state.separations.add(place, penetration.found, -state.goals.allowed(penetration), is_shallow, state.turns);
+    state.separations.add(place, penetration.found, state.goals.allowed(penetration), is_shallow, state.turns);
   }
   return sum;
 }
@@ -44,8 +44,6 @@ double add_separations(MendState& state, const std::vector<PosePenetration>& fou
 void append(const std::vector<PosePenetration>& more, std::vector<PosePenetration>& to) {
   to.insert(to.end(), more.begin(), more.end());
 }
-
-bool is_whole(double frame) { return frame == std::floor(frame); }
 
 double greatest_turn(const MendState& state, const WorkingEvent& event) {
   double most = 0;
@@ -57,16 +55,12 @@ double greatest_turn(const MendState& state, const WorkingEvent& event) {
 }
 
 void classify(const MendState& state, const std::vector<PosePenetration>& found, WorkingEvent& event) {
-  event.depth_after_mm = event.depths_before = event.depths_after = 0;
+  event.depth_after_mm = event.depths_after = 0;
   for (const PosePenetration& penetration : found) {
     if (!event.contains(place_of(penetration)) || !is_fault(penetration.found.kind)) continue;
     const double depth = state.facts.mm * double{penetration.found.measures.depth};
     event.depth_after_mm = std::max(event.depth_after_mm, depth);
-    event.depths_after += is_whole(penetration.frame) ? depth : 0;
-  }
-  for (const auto& [place, before] : state.goals.before()) {
-    event.depths_before +=
-        event.contains(place) && is_fault(before.kind) ? state.facts.mm * double{before.measures.depth} : 0;
+    event.depths_after += is_between(penetration.frame) ? 0 : depth;
   }
   event.turn_degrees = to_degrees(greatest_turn(state, event));
   if (event.is_left_alone()) return;

@@ -76,9 +76,8 @@ std::set<int> turned_frames(const MendState& state) {
 
 }  // namespace
 
-Mend mend_clip(const AnimatedAsset& animated, const Roles& roles, const ClipFrames& clip, const MendOptions& options,
-               const std::function<bool(const Event&)>& leave, const std::function<void(const std::string&)>& report) {
-  const ClipFacts facts = clip_facts(animated, roles, clip, options);
+Mend mend_clip(const ClipFacts& facts, const std::function<bool(const Event&)>& leave,
+               const std::function<void(const std::string&)>& report) {
   MendState state = first_look(facts, leave, report);
   const int rounds = separate_within_budgets(state);
   take_best_rounds(state);

@@ -8,12 +8,19 @@
 
 #include "baker/events/event.h"
 #include "baker/fix/compare.h"
-#include "baker/fix/mend_options.h"
 #include "baker/fix/turned_clip.h"
 #include "baker/play/play.h"
 #include "baker/roles/roles.h"
 
 namespace spherechain::baker {
+
+struct ClipFacts;  // mend_state.h
+
+struct MendOptions {
+  double budget_degrees = 25;   // largest turn of a joint for one event
+  double margin_mm = 1.5;       // distance of separated parts
+  bool is_soft_parted = false;  // part belly, chest, hips and thighs of one skin, too
+};
 
 // kOverBudget to kNoWayOut say why a fault stayed about as deep: a joint would exceed the budget, or the range of an
 // elbow or knee; or every way out shakes or causes other penetrations. kRefused: an animator left it as animated.
@@ -51,7 +58,7 @@ struct Mend {
 // Turns joints until a clip has no faults in its frames and between them. Feet stay in place. No joint turns beyond the
 // budget, so some faults are only reduced, or stay. `leave` returns true for events that must stay as they are; it
 // receives an event as MendedEvent::before has it. `report` receives the current step as text.
-Mend mend_clip(const AnimatedAsset& animated, const Roles& roles, const ClipFrames& clip, const MendOptions& options,
-               const std::function<bool(const Event&)>& leave, const std::function<void(const std::string&)>& report);
+Mend mend_clip(const ClipFacts& facts, const std::function<bool(const Event&)>& leave,
+               const std::function<void(const std::string&)>& report);
 
 }  // namespace spherechain::baker

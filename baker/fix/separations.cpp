@@ -35,24 +35,35 @@ double Separations::gap(const Separation& separation, double frame, const Turns&
   const auto at = [&](const SkinSpot& spot) {
     return motion_of(clip_, pose, animated_.character().source_positions, animated_.weights(), spot, now.data()).at;
   };
-  return separation.way.dot(at(separation.b) - at(separation.a));
+  return to_vec3(separation.row.normal).dot(at(separation.at) - at(separation.at_other));
 }
 
-void Separations::add(const PenetrationKey& place, const Penetration& found, double target, bool is_shallow,
+void Separations::add(const PenetrationKey& place, const Penetration& found, double allowed, bool is_shallow,
                       const Turns& turns) {
   const Character& character = animated_.character();
-  const Separation separation{spot_of(character, found.deepest_other), spot_of(character, found.deepest),
-                              to_vec3(found.direction), target, is_shallow};
+  const ContactRow row{.part = found.part,
+                       .other = found.other,
+                       .body = 0,
+                       .at = found.deepest.position,
+                       .at_other = found.deepest_other.position,
+                       .normal = found.direction,
+                       .gap = -found.distance,
+                       .allowed = static_cast<float>(allowed)};
+  const Separation separation{row, spot_of(character, found.deepest), spot_of(character, found.deepest_other),
+                              is_shallow};
+  const Vec3 way = to_vec3(row.normal);
   std::vector<Separation>& all = of_[place];
   const double end = kAtItsEnd / mm_per_unit(animated_.asset());
-  const auto is_under_way = [&](const Separation& old) { return gap(old, place.frame, turns) < old.target - end; };
-  if (!all.empty() && all.back().way.dot(separation.way) < kSameWay &&
+  const auto is_under_way = [&](const Separation& old) {
+    return gap(old, place.frame, turns) < -double{old.row.allowed} - end;
+  };
+  if (!all.empty() && to_vec3(all.back().row.normal).dot(way) < kSameWay &&
       std::any_of(all.begin(), all.end(), is_under_way)) {
     return;
   }
-  all.erase(
-      std::remove_if(all.begin(), all.end(), [&](const Separation& old) { return old.way.dot(separation.way) < 0; }),
-      all.end());
+  all.erase(std::remove_if(all.begin(), all.end(),
+                           [&](const Separation& old) { return to_vec3(old.row.normal).dot(way) < 0; }),
+            all.end());
   if (all.size() == kMemory) all.erase(all.begin());
   all.push_back(separation);
 }
@@ -70,20 +81,21 @@ void Separations::add_constraints(double weight, const Turns& turns, std::vector
       const auto motion = [&](const SkinSpot& spot) {
         return motion_of(clip_, pose, animated_.character().source_positions, animated_.weights(), spot, now.data());
       };
-      const SpotMotion a = motion(separation.a), b = motion(separation.b);
+      const SpotMotion at = motion(separation.at), other = motion(separation.at_other);
+      const Vec3 way = to_vec3(separation.row.normal);
       Constraint constraint;
       constraint.weight = weight / (arm * arm);
       constraint.weight_above = separation.is_shallow ? kPullBack / (arm * arm) : 0;
-      constraint.target = std::min(separation.target - separation.way.dot(b.at - a.at), kFarthest * height);
+      constraint.target = std::min(-double{separation.row.allowed} - way.dot(at.at - other.at), kFarthest * height);
       std::map<Index, Vec3> by;
       const auto add = [&](const SpotMotion& of, double sign) {
         for (const auto& [joint, moves] : of.by_joint) {
           if (!joints.contains(joint)) continue;
-          by.try_emplace(joint, Vec3::Zero()).first->second += sign * moves.transpose() * separation.way;
+          by.try_emplace(joint, Vec3::Zero()).first->second += sign * moves.transpose() * way;
         }
       };
-      add(b, 1);
-      add(a, -1);
+      add(at, 1);
+      add(other, -1);
       for (const auto& [joint, d] : by) {
         constraint.target += d.dot(now[joint]);
         constraint.terms.push_back({first, joint, (1 - share) * d});

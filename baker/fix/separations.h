@@ -13,6 +13,7 @@
 #include "baker/fix/turned_clip.h"
 #include "baker/play/play.h"
 #include "spherechain/contacts.h"
+#include "spherechain/response.h"
 
 namespace spherechain::baker {
 
@@ -26,11 +27,10 @@ struct PenetrationKey {
   }
 };
 
-// Pushes two skin points apart: b on the part that goes in, a on the other part.
+// A contact row as the runtime's response has it, and the skin that its two spots are on.
 struct Separation {
-  SkinSpot a, b;
-  Vec3 way;         // direction in which b leaves a; unit length
-  double target;    // distance of b from a along `way`; negative: the depth that may stay
+  ContactRow row;
+  SkinSpot at, at_other;
   bool is_shallow;  // the parts must not end far apart
 };
 
@@ -42,8 +42,9 @@ class Separations {
   Separations(const AnimatedAsset& animated, const TurnedClip& clip, JointsOf joints_of)
       : animated_(animated), clip_(clip), joints_of_(std::move(joints_of)) {}
 
-  // Adds a measured penetration. Ignored if its direction differs from a separation that has not reached its target.
-  void add(const PenetrationKey& place, const Penetration& found, double target, bool is_shallow, const Turns& turns);
+  // Adds a measured penetration, of which so much may stay. Ignored if its direction differs from a separation that is
+  // not there yet.
+  void add(const PenetrationKey& place, const Penetration& found, double allowed, bool is_shallow, const Turns& turns);
   // Removes the constraints of each place for which the predicate is true.
   template <typename Predicate>
   void forget(const Predicate& is_it) {

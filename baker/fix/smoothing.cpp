@@ -17,7 +17,7 @@ constexpr double kStepMost = 0.009;   // heights that a joint's end goes further
 constexpr double kStepShare = 0.15;   // of its own step: where the clip is fast or cut, more is not seen
 constexpr double kTip = 0.06;         // heights from a wrist to the middle of its hand
 constexpr double kSpread = 0.02;      // radians a frame: the slope of turns that are spread
-constexpr int kSmoothings = 8;        // with a Gaussian of 1, 2, 4, ... frames
+constexpr int kSmoothings = 8;        // with a Gaussian of 1, 1.5, 2, ... frames
 constexpr int kFadeSteps = 10;        // to this share each, then to nothing
 constexpr double kFade = 0.85;
 
@@ -25,12 +25,16 @@ constexpr double kFade = 0.85;
 std::vector<double> shares_around(const std::vector<char>& marked, double frames, bool loops) {
   std::vector<double> out;
   const auto count = static_cast<int>(marked.size()), reach = static_cast<int>(std::ceil(frames));
+  const auto is_marked = [&](int g) {
+    const int last = count - 1;
+    if (loops && last > 0) g = ((g % last) + last) % last;
+    const bool is_end = loops && g == 0 && marked.back() != 0;  // the last frame is the first again
+    return is_end || (g >= 0 && g < count && marked[static_cast<std::size_t>(g)] != 0);
+  };
   for (int f = 0; f < count; ++f) {
     double near = HUGE_VAL;
     for (int d = -reach; d <= reach; ++d) {
-      int g = f + d;
-      if (loops && count > 1) g = ((g % (count - 1)) + count - 1) % (count - 1);
-      if (g >= 0 && g < count && marked[static_cast<std::size_t>(g)] != 0) near = std::min(near, std::abs(double(d)));
+      if (is_marked(f + d)) near = std::min(near, std::abs(double(d)));
     }
     const double share = std::clamp(1 - near / frames, 0.0, 1.0);
     out.push_back(share * share * (3 - 2 * share));
@@ -39,7 +43,8 @@ std::vector<double> shares_around(const std::vector<char>& marked, double frames
 }
 
 // Makes turns around the marked frames rise and fall more slowly, by turning more where they are small.
-void spread(const TurnedClip& clip, Index joint, const std::vector<double>& shares, double most, Turns& turns) {
+void spread(const TurnedClip& clip, Index joint, const std::vector<double>& shares, double most, bool loops,
+            Turns& turns) {
   const auto frames = static_cast<std::size_t>(clip.frames());
   const auto at = [&](std::size_t f) -> Vec3& { return turns[f * clip.count() + joint]; };
   const auto pull = [&](std::size_t f, const Vec3& from) {
@@ -47,8 +52,12 @@ void spread(const TurnedClip& clip, Index joint, const std::vector<double>& shar
     if (shares[f] == 0 || at(f).norm() > from.norm() || apart.norm() <= most) return;
     at(f) = clip.within_limits(static_cast<int>(f), joint, at(f) + shares[f] * (most / apart.norm() - 1) * apart, 4);
   };
-  for (std::size_t f = 1; f < frames; ++f) pull(f, at(f - 1));
-  for (std::size_t f = frames - 1; f-- > 0;) pull(f, at(f + 1));
+  for (int turn = 0; turn < (loops ? 2 : 1); ++turn) {  // the second time from the seam on
+    for (std::size_t f = 1; f < frames; ++f) pull(f, at(f - 1));
+    if (loops) at(0) = at(frames - 1);
+    for (std::size_t f = frames - 1; f-- > 0;) pull(f, at(f + 1));
+    if (loops) at(frames - 1) = at(0);
+  }
 }
 
 // Smooths a joint's turns with a Gaussian whose standard deviation is `frames` times each frame's share.
@@ -146,7 +155,7 @@ void calm_turns(const TurnedClip& clip, double height, bool loops, Turns& turns)
         fade_out(clip, joint, marked, kWindowPad, attempt == kSmoothings + kFadeSteps ? 0 : kFade, loops, turns);
         continue;
       }
-      spread(clip, joint, shares_around(marked, 4 * pad, loops), kSpread / (1 + attempt), turns);
+      spread(clip, joint, shares_around(marked, 4 * pad, loops), kSpread / (1 + attempt), loops, turns);
       smooth(clip, joint, shares_around(marked, pad, loops), 1 + 0.5 * attempt, loops, turns);
     }
     shaking = shaking_turns(clip, turns, height);

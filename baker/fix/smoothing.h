@@ -16,8 +16,8 @@ using MarkedTurns = std::map<Index, std::vector<char>>;
 void fade_out(const TurnedClip& clip, Index joint, const std::vector<char>& marked, double seconds, double least,
               bool loops, Turns& turns);
 
-// Turns that are seen as turns: around a frame, a joint below has far more jerk than before, or from one frame to the
-// next it moves further against the source clip than a hundredth of the character's height.
+// Turns that one sees as a correction: around a frame, a joint below has far more jerk than in the source clip, or from
+// one frame to the next it goes further than there, by a hundredth of the character's height or more.
 MarkedTurns shaking_turns(const TurnedClip& clip, const Turns& turns, double height);
 
 // Spreads and smooths turns where they shake. Fades out what still shakes then, because shaking is worse than

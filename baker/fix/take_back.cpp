@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "baker/events/join_events.h"
 #include "baker/fix/look.h"
 #include "baker/fix/smoothing.h"
 #include "baker/fix/time_windows.h"
@@ -35,7 +36,7 @@ Depths depths_of(const MendState& state, const std::vector<char>& moves, const s
   };
   for (const auto& [place, of] : state.goals.before()) add(place, of, out.before);
   for (const PosePenetration& one : found) {
-    if (one.frame == std::floor(one.frame)) add(place_of(one), one.found, out.after);
+    if (!is_between(one.frame)) add(place_of(one), one.found, out.after);
   }
   return out;
 }

@@ -43,15 +43,16 @@ struct WorkingEvent {
   std::uint32_t part, other;  // numbers of its parts
   WorkingState state = WorkingState::kOpen;
 
-  // Sums of depths over its frames, in the source's units.
+  double depths_before = 0;  // sum over its frames, in mm
+  // Sum of depths over its frames, in the source's units.
   double residual_at_start = 0;
   LeastResidual least = {};
   bool was_searched = false;  // a way out was searched for it
 
   // In the clip as measured last.
   double depth_after_mm = 0;
-  double depths_before = 0, depths_after = 0;  // sums over its frames
-  double turn_degrees = 0;                     // largest turn of a joint in its frames
+  double depths_after = 0;  // as depths_before
+  double turn_degrees = 0;  // largest turn of a joint in its frames
 
   int from() const { return static_cast<int>(found.from); }
   int to() const { return static_cast<int>(found.to); }

@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "baker/mesh/error.h"
+#include "baker/import/glb_file.h"
 #include "baker/write/glb_mark.h"
 
 namespace spherechain::baker {
@@ -16,74 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::uint32_t kMagic = 0x46546C67, kJson = 0x4E4F534A, kBinary = 0x004E4942;
 constexpr double kUnturned = 1e-7;  // radians: no turn
-
-struct Glb {
-  ordered_json json;
-  std::string binary;
-};
-
-std::uint32_t word_at(const std::string& bytes, std::size_t at) {
-  std::uint32_t out = 0;
-  if (at + 4 <= bytes.size()) std::memcpy(&out, bytes.data() + at, 4);
-  return out;
-}
-
-Glb read_glb(const std::string& bytes, const std::string& file) {
-  if (word_at(bytes, 0) != kMagic || word_at(bytes, 4) != 2 || word_at(bytes, 16) != kJson) {
-    throw Error(ExitCode::kFile,
-                file + ": is no binary glTF 2.0 file, which a mended clip is written to (export it as .glb)");
-  }
-  const std::size_t json_size = word_at(bytes, 12), end = 20 + json_size;
-  Glb out;
-  out.json = ordered_json::parse(
-      bytes.begin() + 20, bytes.begin() + static_cast<std::ptrdiff_t>(std::min(end, bytes.size())), nullptr, false);
-  if (out.json.is_discarded()) throw Error(ExitCode::kFile, file + ": its JSON is broken");
-  if (end + 8 <= bytes.size() && word_at(bytes, end + 4) == kBinary) {
-    out.binary = bytes.substr(end + 8, word_at(bytes, end));
-  }
-  return out;
-}
-
-void put_word(std::string& out, std::size_t word) {
-  const auto value = static_cast<std::uint32_t>(word);
-  out.append(reinterpret_cast<const char*>(&value), 4);
-}
-
-std::string to_bytes(const Glb& glb) {
-  std::string json = glb.json.dump();
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  std::string binary = glb.binary;
-  binary.resize((binary.size() + 3) / 4 * 4, '\0');
-  std::string out;
-  put_word(out, kMagic);
-  put_word(out, 2);
-  put_word(out, 12 + 8 + json.size() + 8 + binary.size());
-  put_word(out, json.size());
-  put_word(out, kJson);
-  out += json;
-  put_word(out, binary.size());
-  put_word(out, kBinary);
-  return out + binary;
-}
-
-int add_accessor(Glb& glb, const std::vector<float>& numbers, const char* type, std::size_t width) {
-  glb.binary.resize((glb.binary.size() + 3) / 4 * 4, '\0');
-  glb.json["bufferViews"].push_back(
-      {{"buffer", 0}, {"byteOffset", glb.binary.size()}, {"byteLength", numbers.size() * sizeof(float)}});
-  glb.binary.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float));
-  ordered_json accessor{{"bufferView", glb.json["bufferViews"].size() - 1},
-                        {"componentType", 5126},
-                        {"count", numbers.size() / width},
-                        {"type", type}};
-  if (width == 1) {
-    accessor["min"] = ordered_json::array({numbers.front()});
-    accessor["max"] = ordered_json::array({numbers.back()});
-  }
-  glb.json["accessors"].push_back(std::move(accessor));
-  return static_cast<int>(glb.json["accessors"].size()) - 1;
-}
 
 // A node with a matrix cannot be animated: it gets its parts.
 void take_apart(ordered_json& node, const Node& parts) {
@@ -163,7 +95,7 @@ std::vector<Channel> turned_channels(const TurnedClip& clip, const Turns& turns,
 
 std::string with_channels(const std::string& bytes, const std::string& file, const SourceRig& rig, int animation,
                           const std::string& clip_name, const std::vector<Channel>& channels) {
-  Glb glb = read_glb(bytes, file);
+  GlbFile glb = glb_of_bytes(bytes, file);
   if (channels.empty()) return bytes;
   ordered_json& animations = glb.json["animations"];
   if (animation < 0) {
@@ -172,7 +104,7 @@ std::string with_channels(const std::string& bytes, const std::string& file, con
         {{"name", clip_name}, {"samplers", ordered_json::array()}, {"channels", ordered_json::array()}});
   }
   ordered_json& target = animations[static_cast<std::size_t>(animation)];
-  std::map<std::vector<double>, int> inputs;  // one for all that have the same times
+  std::map<std::vector<double>, std::size_t> inputs;  // one for all that have the same times
   for (const Channel& channel : channels) {
     const Node& node = rig.nodes[channel.target];
     const char* const path = path_name(channel.path);
@@ -181,10 +113,10 @@ std::string with_channels(const std::string& bytes, const std::string& file, con
       const ordered_json& to = one["target"];
       return to.value("node", -1) == node.in_file && to.value("path", "") == path;
     };
-    const auto [input, is_new] = inputs.try_emplace(channel.times);
-    if (is_new) input->second = add_accessor(glb, to_floats(channel.times), "SCALAR", 1);
+    const auto [input, is_new] = inputs.try_emplace(channel.times, 0);
+    if (is_new) input->second = glb.add_accessor(to_floats(channel.times), "SCALAR", 0, true);
     const bool is_turn = channel.path == ChannelPath::kRotation;
-    const int output = add_accessor(glb, to_floats(channel.values), is_turn ? "VEC4" : "VEC3", is_turn ? 4 : 3);
+    const std::size_t output = glb.add_accessor(to_floats(channel.values), is_turn ? "VEC4" : "VEC3");
     target["samplers"].push_back(
         {{"input", input->second}, {"output", output}, {"interpolation", interpolation_name(channel.interpolation)}});
     const std::size_t sampler = target["samplers"].size() - 1;
@@ -195,10 +127,8 @@ std::string with_channels(const std::string& bytes, const std::string& file, con
       target["channels"].push_back({{"sampler", sampler}, {"target", {{"node", node.in_file}, {"path", path}}}});
     }
   }
-  if (!glb.json.contains("buffers")) glb.json["buffers"].push_back(ordered_json::object());
-  glb.json["buffers"][0]["byteLength"] = glb.binary.size();
   mark_as_own(glb.json);
-  return to_bytes(glb);
+  return glb.bytes();
 }
 
 }  // namespace spherechain::baker

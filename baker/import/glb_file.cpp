@@ -135,6 +135,11 @@ std::string GlbFile::bytes() const {
   return out + data;
 }
 
+const ordered_json& entry_of(const ordered_json& object, const std::string& name) {
+  static const ordered_json kNull;
+  return object.is_object() && object.contains(name) ? object[name] : kNull;
+}
+
 GlbFile glb_of_bytes(const std::string& bytes, const std::string& file) {
   const auto word_at = [&](std::size_t at) {
     std::size_t out = 0;

@@ -24,6 +24,9 @@ struct GlbFile {
   std::string bytes() const;
 };
 
+// The entry of an object, or null.
+const nlohmann::ordered_json& entry_of(const nlohmann::ordered_json& object, const std::string& name);
+
 // A binary glTF apart; read_as_glb() makes such bytes. Throws Error(kFile) that names `file` where it is none.
 GlbFile glb_of_bytes(const std::string& bytes, const std::string& file);
 

@@ -13,6 +13,15 @@ namespace {
 // A clip of one key is a pose: it shows for a frame.
 double length_of(const Clip& clip) { return std::max(clip.duration, 1.0 / 30); }
 
+// A few keys between do not change it, or a few that are missing.
+double usual_gap(const std::vector<double>& times) {
+  std::vector<double> gaps;
+  for (std::size_t k = 1; k < times.size(); ++k) gaps.push_back(times[k] - times[k - 1]);
+  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  return *middle;
+}
+
 bool keys_are_frames(const Clip& clip, double rate) {
   for (const Channel& channel : clip.channels) {
     for (const double time : channel.times) {
@@ -39,9 +48,8 @@ double even_rate(double fps, double own) {
 double rate_of(const Clip& clip) {
   double densest = 0;
   for (const Channel& channel : clip.channels) {
-    const std::vector<double>& times = channel.times;
-    if (times.size() < 2 || times.back() <= times.front()) continue;
-    densest = std::max(densest, static_cast<double>(times.size() - 1) / (times.back() - times.front()));
+    if (channel.times.size() < 2) continue;
+    if (const double gap = usual_gap(channel.times); gap > 0) densest = std::max(densest, 1 / gap);
   }
   constexpr double kOtherwise = 30, kMin = 5, kMax = 480;
   for (const double rate : {30.0, 24.0, 25.0, 60.0, 50.0, 48.0, 120.0, 100.0}) {

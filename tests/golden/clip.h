@@ -14,7 +14,7 @@
 
 namespace spherechain::test {
 
-inline constexpr std::size_t kFrames = 256;
+inline constexpr std::size_t kFrames = 300;
 
 struct Doll {
   // Reads the folder's doll.obj and `file`, an asset baked from it. On failure `error` says why.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // golden FOLDER [--print]
-// Hashes the spheres, pairs, skin contacts, penetrations and responses of a clip of 256 frames, on every target and in
+// Hashes the spheres, pairs, skin contacts, penetrations and responses of a clip of 300 frames, on every target and in
 // one to four threads, and compares them with the folder's hashes.txt. They are the same on every machine, with every
 // compiler and at every optimization level.
 //

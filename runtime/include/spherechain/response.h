@@ -96,8 +96,8 @@ SPHERECHAIN_API void sc_destroy_response(sc_response* response) SC_NOEXCEPT; /* 
  * have no way out.
  *
  * SC_OK; SC_NULL, SC_BAD_VALUE (with SC_FIELD_TRANSFORM: a transform is not finite; with SC_FIELD_JOINTS: a planted
- * joint does not exist, or they are too many), or a status of the questions: then
- * joints and state are as they were. After SC_OK the body is in the corrected pose. */
+ * joint does not exist, or they are too many), or a status of the questions: then joints and state are as they were.
+ * After SC_OK the body is in the corrected pose. */
 SPHERECHAIN_API sc_status sc_respond(sc_response* response, uint64_t* state, sc_response_frame* frame) SC_NOEXCEPT;
 
 #if defined(__cplusplus)

@@ -28,6 +28,12 @@ std::vector<double> planted_fault() {
   return out;
 }
 
+Eigen::AlignedBox3d bounds_of(const std::vector<Vec3>& positions) {
+  Eigen::AlignedBox3d out;
+  for (const Vec3& p : positions) out.extend(p);
+  return out;
+}
+
 struct Files {
   TemporaryFolder folder;
   fs::path character, take;
@@ -140,6 +146,30 @@ TEST_CASE("fix: what cannot be written from a recording is refused, and nothing 
   tool::check_error(tool::run("fix " + files.path("none.glb") + " --motion '" + files.take.string() + "' -o " +
                               files.path("none_mended.glb")),
                     3, {"take 1.bvh: ends before its motion"});
+}
+
+TEST_CASE("fix: a character without bones is mended on its automatic rig, which its GLB then has" *
+          doctest::test_suite("long runs")) {
+  const TemporaryFolder folder;
+  const std::string models = "/usr/share/assimp/models/", human = models + "Collada/human.zae",
+                    whole = tool::contents(models + "BVH/01_01.bvh"), stated = "Frames: 2752";
+  // The first 48 frames: in 40 of them a hand is in the head.
+  std::size_t end = whole.find(stated);
+  REQUIRE(end != std::string::npos);
+  const std::size_t header = end;
+  for (int line = 0; line < 50; ++line) end = whole.find('\n', end) + 1;
+  const auto take = folder.write("take.bvh", whole.substr(0, header) + "Frames: 48" +
+                                                 whole.substr(header + stated.size(), end - header - stated.size()));
+  const tool::Run run =
+      tool::run("fix " + human + " --motion " + take.string() + " -o " + folder.path.string() + "/out.glb");
+  CHECK_MESSAGE(run.code == 0, run.error);
+  CHECK(run.out.find("take: 1 event, 1 cleared") != std::string::npos);
+  const Character before = import_character(human), after = import_character(folder.path / "out.glb");
+  CHECK(after.source_triangles == before.source_triangles);
+  CHECK(after.rig.bones.size() == 19);
+  REQUIRE(after.rig.clips.size() == 1);
+  const Eigen::AlignedBox3d was = bounds_of(before.source_positions), is = bounds_of(after.source_positions);
+  CHECK(is.diagonal().norm() == doctest::Approx(before.metres_per_unit * was.diagonal().norm()));
 }
 
 TEST_CASE("fix: what a baseline accepts is left; what is worse than that is not" * doctest::test_suite("long runs")) {

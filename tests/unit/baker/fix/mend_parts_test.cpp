@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "baker/fix/constraints.h"
+#include "baker/fix/goals.h"
 #include "baker/fix/joints.h"
 #include "baker/fix/obstacle.h"
 #include "baker/fix/part_joints.h"
@@ -272,6 +273,59 @@ TEST_CASE("mend: a joint that shakes or jumps is seen and calmed; one that swing
   CHECK(shaking_turns(s.turned, s.turns, kStickHeight).empty());
   CHECK(s.turns[30 * s.turned.count()].z() > 0.2);
   CHECK(s.turns[20 * s.turned.count()].z() > 0.05);
+}
+
+TEST_CASE("mend: turns are calmed and fade over a loop's seam") {
+  Sticks s({"upper_arm.L", "forearm.L", "hand.L"});
+  const std::size_t count = s.turned.count(), last = (kClipFrames - 1) * count;
+  for (int f = 48; f < 57; ++f) s.turns[static_cast<std::size_t>(f) * count] = {0, 0, 0.3};
+  calm_turns(s.turned, kStickHeight, true, s.turns);
+  CHECK((s.turns[last] - s.turns[0]).norm() < 1e-9);
+  CHECK(s.turns[0].z() > 0.05);
+  std::vector<char> marked(kClipFrames, 0);
+  marked.back() = 1;
+  fade_out(s.turned, 0, marked, 0.2, 0, true, s.turns);
+  CHECK(s.turns[0].norm() + s.turns[last].norm() == 0);
+}
+
+// A hand that goes into a part of one skin with it, in these frames.
+std::vector<PosePenetration> faults_in(std::uint32_t part, std::uint32_t other, int from, int to, bool is_one_piece) {
+  std::vector<PosePenetration> out;
+  for (int f = from; f <= to; ++f) {
+    spherechain::Penetration found{};
+    found.part = part;
+    found.other = other;
+    found.kind = SC_CLASS_PENETRATION;
+    found.measures.depth = found.fault_depth = 0.05F;
+    found.measures.is_one_piece = is_one_piece ? 1 : 0;
+    found.measures.rest_distance = 1;
+    out.push_back({static_cast<double>(f), found});
+  }
+  return out;
+}
+
+TEST_CASE("mend: flesh on flesh is left unless it is asked for; what is a fault only to a strict eye stays as it is") {
+  std::vector<BodyPart> parts(3);
+  parts[0] = {"abdomen", Side::kNone, 0, -1, 0};
+  parts[1] = {"left thigh", Side::kLeft, 1, 0, 3};
+  parts[2] = {"left hand", Side::kLeft, 2, 0, 8};
+  const auto leave = [](const Event&) { return false; };
+  const auto goals = [&](std::uint32_t part, bool is_one_piece, bool is_soft_parted) {
+    MendOptions options;
+    options.is_soft_parted = is_soft_parted;
+    return goals_of(faults_in(part, 0, 5, 25, is_one_piece), faults_in(part, 0, 10, 20, is_one_piece), 60, parts, 1000,
+                    options, leave);
+  };
+  CHECK(goals(1, true, false).events.at(0).state == WorkingState::kFold);
+  CHECK(goals(1, true, true).events.at(0).state == WorkingState::kOpen);
+  CHECK(goals(1, false, false).events.at(0).state == WorkingState::kOpen);  // trousers
+  const Goals hand = goals(2, true, false);
+  CHECK(hand.events.at(0).from() == 10);
+  CHECK(hand.too_deep(faults_in(2, 0, 15, 15, true)[0]) == doctest::Approx(0.05));
+  CHECK(hand.too_deep(faults_in(2, 0, 6, 6, true)[0]) == doctest::Approx(0.05));
+  const Goals thigh = goals(1, true, false);
+  CHECK(thigh.too_deep(faults_in(1, 0, 6, 6, true)[0]) == 0);
+  CHECK(thigh.too_deep(faults_in(1, 0, 40, 40, true)[0]) == doctest::Approx(0.05));  // new
 }
 
 TEST_CASE("mend: what lies together in time is one span, over a loop's seam too") {

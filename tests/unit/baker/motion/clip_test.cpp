@@ -102,6 +102,21 @@ TEST_CASE("a clip bends a skinned arm, whatever the scene's axes and units") {
   }
 }
 
+TEST_CASE("a clip's rate is that of most of its keys, whether or not keys are missing or lie between") {
+  const auto rate = [](std::vector<double> times) {
+    Clip clip = bend(90);
+    clip.channels[0].times = std::move(times);
+    return rate_of(clip);
+  };
+  std::vector<double> times;
+  for (int k = 0; k < 24; ++k) times.push_back(k / 24.0);
+  CHECK(rate(times) == 24);
+  times.insert(times.begin() + 7, 0.28);
+  CHECK(rate(times) == doctest::Approx(24).epsilon(1e-3));
+  times.erase(times.begin() + 12, times.begin() + 15);
+  CHECK(rate(times) == doctest::Approx(24).epsilon(1e-3));
+}
+
 TEST_CASE("clips play one after another, each from its own start") {
   const SourceRig rig = arm(Affine::Identity());
   const Clip first = bend(90), second{"still", 2, {}};

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "baker/export/rest_nodes.h"
+#include "baker/import/rest_nodes.h"
 
 #include <nlohmann/json.hpp>
 
-#include "baker/export/glb_json.h"
+#include "baker/import/glb_file.h"
 
 namespace spherechain::baker {
 namespace {

@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "baker/motion/motion.h"
+#include "baker/import/source_rig.h"
 
 namespace spherechain::baker {
 
