@@ -87,6 +87,15 @@ struct FixOptions {
 };
 ExitCode run_fix(const FixOptions& options);
 
+struct ScoreOptions {
+  std::vector<std::string> library, bodies, metrics, keep_below;
+  std::string output, motion, clip, reference, character;
+  GivenSize size;
+  double fps = 0;  // 0: each clip's own
+  bool json = false, csv = false;
+};
+ExitCode run_score(const ScoreOptions& options);
+
 struct ExportOptions {
   std::string asset, source, format, output, filter, volumes;  // empty volumes: what the format holds best
   GivenSize size;                                              // the asset's in place of a file's

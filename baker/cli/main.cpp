@@ -367,6 +367,39 @@ int main(int argc, char** argv) {
   add_output(*check_command, "--sarif", check.sarif, "SARIF file to write");
   check_command->callback([&] { run = [&] { return run_check(check); }; });
 
+  ScoreOptions score;
+  CLI::App* score_command = app.add_subcommand("score", "Score clips: exact numbers, and those that papers print");
+  score_command->add_option("LIBRARY", score.library, "Characters: files, folders, or a JSON manifest, as for check")
+      ->required()
+      ->check(refuse_empty);
+  add_output(*score_command, "-o,--output", score.output, "Folder to write: score.json, score.csv and a page")
+      ->required();
+  CLI::Option* score_motion = add_name(*score_command, "--motion", score.motion,
+                                       "Recording, or a folder of them, in place of the characters' own clips");
+  score_command->add_option("--bodies", score.bodies, "More characters that the same recordings are carried over to")
+      ->check(refuse_empty)
+      ->needs(score_motion);
+  add_name(*score_command, "--clip", score.clip, "One of the characters' own clips: its name or number (default: all)")
+      ->excludes(score_motion);
+  add_name(*score_command, "--reference", score.reference,
+           "What clips are compared with: the name of one of them, or a recording");
+  score_command->add_option("--metrics", score.metrics, "Metrics to measure, with commas between (default: all)")
+      ->delimiter(',')
+      ->check(refuse_empty);
+  score_command
+      ->add_option("--keep-below", score.keep_below,
+                   "METRIC=NUMBER, with commas between: write keep.txt and drop.txt, by whether all are below")
+      ->delimiter(',')
+      ->check(refuse_empty);
+  score_command->add_option("--fps", score.fps, "Frames a second (default: each clip's own)")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->check(refuse_nan);
+  add_character(*score_command, score.character);
+  add_size(*score_command, score.size);
+  CLI::Option* score_json = score_command->add_flag("--json", score.json, "Print the JSON in place of a table");
+  score_command->add_flag("--csv", score.csv, "Print the CSV in place of a table")->excludes(score_json);
+  score_command->callback([&] { run = [&] { return run_score(score); }; });
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& help) {

@@ -6,7 +6,7 @@
 set(rooms base simd asset pose refit pairs triangles skin clusters contacts depth gaps inside penetrations step bodies response crowd)
 set(room_size 15)  # files
 set(stages mesh os import roles segment wrap fit chains rig bind edits clusters layers write calibrate pipeline motion play volumes filter mask truth report events
-  page check fix export cli)
+  page check fix score export cli)
 
 file(GLOB_RECURSE sources ${ROOT}/runtime/*.h ${ROOT}/runtime/*.cpp ${ROOT}/runtime/*.cc ${ROOT}/runtime/*.inl
   ${ROOT}/cuda/*.h ${ROOT}/cuda/*.cuh ${ROOT}/cuda/*.cpp ${ROOT}/cuda/*.cu)

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "baker/score/score_library.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <mutex>
+
+#include "baker/check/run.h"
+#include "baker/mesh/error.h"
+#include "baker/os/child_process.h"
+#include "baker/os/parallel.h"
+#include "baker/pipeline/pipeline.h"
+
+namespace spherechain::baker {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A clip of a character: a recording, or with an empty file one of its own.
+struct Unit {
+  std::string name;
+  fs::path recording;
+  std::size_t number = 0;  // of the character's own clips
+};
+
+// What one thread needs to score clips of a character.
+struct Worker {
+  Worker(const std::string& asset, const LibraryCharacter& character, const ScoreJob& job)
+      : animated(OpenAsset(asset, character.name), character.name, character.file.string(), {}, {0, job.fps}),
+        scorer(animated, job.metrics) {}
+
+  AnimatedAsset animated;
+  ClipScorer scorer;
+  bool plays_own = true;
+};
+
+class CharacterRun {
+ public:
+  CharacterRun(const LibraryCharacter& character, const ScoreJob& job, std::string asset,
+               const std::function<void(const std::string&)>& progress)
+      : character_(character), job_(job), asset_(std::move(asset)), progress_(progress) {}
+
+  std::vector<ScoreRow> run() {
+    const std::vector<Unit> units = units_of();
+    std::vector<ScoreRow> rows(units.size());
+    std::vector<std::optional<Worker>> workers(std::min(thread_count(), std::max<std::size_t>(1, units.size())));
+    const std::optional<ClipPlaces> reference = find_reference(workers[0], units);
+    std::atomic<std::size_t> done{0};
+    run_parallel(workers.size(), units.size(), [&](std::size_t thread, std::size_t u) {
+      rows[u].character = character_.name;
+      rows[u].score.clip = units[u].name;
+      try {
+        rows[u].score = score(workers[thread], units[u], reference ? &*reference : nullptr);
+        rows[u].score.places = {};
+      } catch (const Interrupted&) {
+        throw;
+      } catch (const Error& error) {
+        rows[u].error = error.what();
+      }
+      tell(fmt::format("{} of {} clips", ++done, units.size()));
+    });
+    return rows;
+  }
+
+ private:
+  // All that reads files or tells the user is done by one thread at a time.
+  void tell(const std::string& text) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    progress_(character_.name + ": " + text);
+  }
+
+  std::vector<Unit> units_of() {
+    std::vector<Unit> out;
+    for (const LibraryCharacter::Motion& motion : character_.motions) out.push_back({motion.name, motion.file, 0});
+    if (!out.empty()) return out;
+    const AnimatedAsset animated(OpenAsset(asset_, character_.name), character_.name, character_.file.string(), {},
+                                 {0, job_.fps});
+    const std::vector<std::string> names = unique_clip_names(animated.character().rig);
+    for (std::size_t c = 0; c < names.size(); ++c) {
+      if (job_.clip.empty() || names[c] == job_.clip || std::to_string(c) == job_.clip)
+        out.push_back({names[c], {}, c});
+    }
+    if (out.empty()) {
+      throw Error(ExitCode::kFile,
+                  character_.file.string() + (job_.clip.empty() ? ": has no clips (--motion brings one)"
+                                                                : ": has no clip '" + job_.clip + "'"));
+    }
+    return out;
+  }
+
+  ClipScore score(std::optional<Worker>& worker, const Unit& unit, const ClipPlaces* reference) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (!worker) worker.emplace(asset_, character_, job_);
+      if (!unit.recording.empty()) {
+        worker->animated.play({{}, {}, unit.recording.string()}, {0, job_.fps});
+        worker->plays_own = false;
+      } else if (!worker->plays_own) {
+        worker->animated.play({}, {0, job_.fps});
+        worker->plays_own = true;
+      }
+    }
+    const ClipFrames& clip = worker->animated.clips()[unit.recording.empty() ? unit.number : 0];
+    ClipScore out = worker->scorer.score(clip, reference, [&](int frame) {
+      if (frame % 100 == 0) tell(fmt::format("{}, frame {} of {}", unit.name, frame, clip.count));
+    });
+    out.clip = unit.name;
+    return out;
+  }
+
+  std::optional<ClipPlaces> find_reference(std::optional<Worker>& worker, const std::vector<Unit>& units) {
+    if (job_.reference.empty()) return {};
+    const auto named =
+        std::find_if(units.begin(), units.end(), [&](const Unit& unit) { return unit.name == job_.reference; });
+    const Unit unit = named != units.end() ? *named : Unit{fs::path(job_.reference).stem().string(), job_.reference, 0};
+    if (named == units.end() && !fs::exists(job_.reference)) {
+      throw Error(ExitCode::kFile,
+                  "--reference: " + job_.reference + " is no clip of " + character_.name + ", and no file");
+    }
+    tell("the reference");
+    static const ClipPlaces kNone;  // with one, all places are looked at
+    return score(worker, unit, &kNone).places;
+  }
+
+  const LibraryCharacter& character_;
+  const ScoreJob& job_;
+  const std::string asset_;
+  const std::function<void(const std::string&)>& progress_;
+  std::mutex mutex_;
+};
+
+}  // namespace
+
+std::vector<ScoreRow> score_library(const ScoreJob& job, const std::function<void(const std::string&)>& progress) {
+  std::vector<ScoreRow> out;
+  for (const LibraryCharacter& character : job.characters) {
+    try {
+      if (!character.error.empty()) throw Error(ExitCode::kFile, character.error);
+      const Bake baked = bake(character.file, character.config.bake,
+                              [&](const std::string& stage) { progress(character.name + ": " + stage); });
+      std::string asset(reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size());
+      const std::vector<ScoreRow> rows = CharacterRun(character, job, std::move(asset), progress).run();
+      out.insert(out.end(), rows.begin(), rows.end());
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const Error& error) {
+      out.push_back({character.name, {}, error.what()});
+    }
+  }
+  return out;
+}
+
+}  // namespace spherechain::baker
