@@ -384,11 +384,13 @@ int main(int argc, char** argv) {
   add_name(*score_command, "--reference", score.reference,
            "What clips are compared with: the name of one of them, or a recording");
   score_command->add_option("--metrics", score.metrics, "Metrics to measure, with commas between (default: all)")
+      ->allow_extra_args(false)
       ->delimiter(',')
       ->check(refuse_empty);
   score_command
       ->add_option("--keep-below", score.keep_below,
                    "METRIC=NUMBER, with commas between: write keep.txt and drop.txt, by whether all are below")
+      ->allow_extra_args(false)
       ->delimiter(',')
       ->check(refuse_empty);
   score_command->add_option("--fps", score.fps, "Frames a second (default: each clip's own)")

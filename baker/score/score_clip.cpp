@@ -208,11 +208,11 @@ ClipScore ClipScorer::score(const ClipFrames& clip, const ClipPlaces* reference,
         if (one.frame == static_cast<int>(f) && counts(one.found.kind))
           faulty.insert(std::minmax(one.found.part, one.found.other));
       }
-      std::vector<TriangleContact> crossed;
+      std::vector<TriangleContact> crossed, others;
       for (const TriangleContact& contact : player_.triangles()) {
-        if (faulty.contains(std::minmax(contact.part_a, contact.part_b))) crossed.push_back(contact);
+        (faulty.contains(std::minmax(contact.part_a, contact.part_b)) ? crossed : others).push_back(contact);
       }
-      const Swallowed inside = swallowed_.measure(animated_.positions(deformation), crossed);
+      const Swallowed inside = swallowed_.measure(animated_.positions(deformation), crossed, others);
       sums.area += inside.area;
       sums.volume += inside.volume;
     }

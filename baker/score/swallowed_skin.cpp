@@ -11,6 +11,14 @@ namespace {
 
 constexpr int kDepth = 5;  // a triangle that is crossed is cut in four so often, where a line is near
 
+// A region that is bounded by a line that does not close is inside and outside: its corners on lines do not agree.
+constexpr double kMostVotes = 0.75;
+
+// Corners of crossed triangles.
+struct Votes {
+  int behind = 0, all = 0;
+};
+
 // A line in which another triangle crosses this one.
 struct Line {
   Vec3 from, to;
@@ -83,31 +91,43 @@ SwallowedSkin::SwallowedSkin(const ScoredSkin& skin) : skin_(skin), triangles_at
   }
 }
 
-Swallowed SwallowedSkin::measure(const std::vector<Vec3>& positions,
-                                 const std::vector<TriangleContact>& contacts) const {
-  std::map<Index, std::vector<Line>> lines;  // by triangle
+Swallowed SwallowedSkin::measure(const std::vector<Vec3>& positions, const std::vector<TriangleContact>& contacts,
+                                 const std::vector<TriangleContact>& others) const {
   const auto corner = [&](Index t, std::size_t k) -> const Vec3& { return positions[skin_.triangles[t][k]]; };
-  const auto add = [&](Index of, Index by, const TriangleContact& contact) {
-    const Vec3 &a = corner(by, 0), normal = (corner(by, 1) - a).cross(corner(by, 2) - a);
-    lines[of].push_back({to_vec3(contact.from), to_vec3(contact.to), a, normal});
+  using LinesOf = std::map<Index, std::vector<Line>>;  // by triangle
+  const auto add_lines = [&](const std::vector<TriangleContact>& from, LinesOf& to) {
+    const auto add = [&](Index of, Index by, const TriangleContact& contact) {
+      const Vec3 &a = corner(by, 0), normal = (corner(by, 1) - a).cross(corner(by, 2) - a);
+      to[of].push_back({to_vec3(contact.from), to_vec3(contact.to), a, normal});
+    };
+    for (const TriangleContact& contact : from) {
+      add(contact.triangle_a, contact.triangle_b, contact);
+      add(contact.triangle_b, contact.triangle_a, contact);
+    }
   };
-  for (const TriangleContact& contact : contacts) {
-    add(contact.triangle_a, contact.triangle_b, contact);
-    add(contact.triangle_b, contact.triangle_a, contact);
-  }
   Flux flux;
-  std::map<Index, int> votes;  // by joined vertex: how many crossed triangles have it behind a line, less the others
+  LinesOf lines;
+  add_lines(contacts, lines);
+  for (const auto& [t, of] : lines) flux.add_behind(corner(t, 0), corner(t, 1), corner(t, 2), of, 0);
+  std::set<Index> counted;  // joined vertices of these triangles
   for (const auto& [t, of] : lines) {
-    flux.add_behind(corner(t, 0), corner(t, 1), corner(t, 2), of, 0);
+    for (const Index v : skin_.triangles[t]) counted.insert(skin_.joined[v]);
+  }
+  add_lines(others, lines);
+  std::map<Index, Votes> votes;  // by joined vertex
+  for (const auto& [t, of] : lines) {
     for (std::size_t k = 0; k < 3; ++k) {
-      votes[skin_.joined[skin_.triangles[t][k]]] += side_of(corner(t, k), of).is_behind ? 1 : -1;
+      Votes& vote = votes[skin_.joined[skin_.triangles[t][k]]];
+      vote.behind += side_of(corner(t, k), of).is_behind ? 1 : 0;
+      ++vote.all;
     }
   }
   std::vector<char> is_taken(skin_.triangles.size(), 0);
   for (const auto& [start, vote] : votes) {
     // The triangles that lines bound, from one line to the next.
     std::vector<Index> region;
-    int sum = vote;
+    Votes sum = vote;
+    bool is_counted = counted.contains(start);
     const auto lead_on = [&](Index vertex) {
       for (const Index t : triangles_at_[vertex]) {
         if (is_taken[t] != 0 || lines.contains(t)) continue;
@@ -121,11 +141,15 @@ Swallowed SwallowedSkin::measure(const std::vector<Vec3>& positions,
       for (const Index v : skin_.triangles[region[r]]) {
         const Index vertex = skin_.joined[v];
         if (!corners.insert(vertex).second) continue;
-        if (const auto more = votes.find(vertex); more != votes.end()) sum += more->second;
+        if (const auto more = votes.find(vertex); more != votes.end()) {
+          sum.behind += more->second.behind;
+          sum.all += more->second.all;
+          is_counted |= counted.contains(vertex);
+        }
         lead_on(vertex);
       }
     }
-    if (sum <= 0) continue;
+    if (!is_counted || sum.behind < kMostVotes * sum.all) continue;
     for (const Index t : region) flux.add(corner(t, 0), corner(t, 1), corner(t, 2));
   }
   if (flux.area == 0) return {};

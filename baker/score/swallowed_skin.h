@@ -12,14 +12,16 @@ struct Swallowed {
 };
 
 // The skin that lies behind the lines in which the contacts' triangles cross. A triangle that is crossed lies inside as
-// far as it is behind the nearest triangle that crosses it; the skin between such triangles lies inside if most of its
-// corners on them do. The volume is that of the skin's flux from its middle, so that it exists for every skin, open or
-// closed; where parts and lines are closed, it is that of their intersection.
+// far as it is behind the nearest triangle that crosses it; the skin between such triangles lies inside if three
+// quarters of its corners on them do. The volume is that of the skin's flux from its middle, so that it exists for
+// every skin, open or closed; where parts and lines are closed, it is that of their intersection.
 class SwallowedSkin {
  public:
   // `skin` must outlive it.
   explicit SwallowedSkin(const ScoredSkin& skin);
-  Swallowed measure(const std::vector<Vec3>& positions, const std::vector<TriangleContact>& contacts) const;
+  // `others` bound skin as `contacts` do, and are not measured.
+  Swallowed measure(const std::vector<Vec3>& positions, const std::vector<TriangleContact>& contacts,
+                    const std::vector<TriangleContact>& others) const;
 
  private:
   const ScoredSkin& skin_;

@@ -40,3 +40,4 @@ mkdirSync(folder, { recursive: true });
 await make('viewer.html', 'src/main.js', read('index.html'), Boolean(runtime));
 await make('report_clip.html', 'src/report/clip.js', read('index.html'));
 await make('report_index.html', 'src/report/library.js', read('library.html'));
+await make('report_score.html', 'src/report/score.js', read('score.html'));

@@ -74,14 +74,14 @@ TEST_CASE("score: skin inside another box has the area and the volume of the box
   add_box(mesh, {0.7, 0.21, 0.23}, {1.3, 0.81, 0.83});
   const ScoredSkin skin = scored_skin(mesh.positions, mesh.triangles);
   const SwallowedSkin swallowed(skin);
-  const Swallowed found = swallowed.measure(mesh.positions, contacts_of(mesh, 12));
+  const Swallowed found = swallowed.measure(mesh.positions, contacts_of(mesh, 12), {});
   CHECK(found.volume == doctest::Approx(0.3 * 0.6 * 0.6).epsilon(0.01));
   CHECK(found.area == doctest::Approx(2 * 0.36 + 4 * 0.3 * 0.6).epsilon(0.01));
   // Where a box is open its volume still exists, and is near that.
   std::vector<TriangleContact> some = contacts_of(mesh, 12);
   some.erase(some.begin());
-  CHECK(swallowed.measure(mesh.positions, some).volume == doctest::Approx(0.108).epsilon(0.5));
-  CHECK(swallowed.measure(mesh.positions, {}).area == 0);
+  CHECK(swallowed.measure(mesh.positions, some, {}).volume == doctest::Approx(0.108).epsilon(0.5));
+  CHECK(swallowed.measure(mesh.positions, {}, contacts_of(mesh, 12)).area == 0);
 }
 
 TEST_CASE("score: STaR's rate counts vertices behind the nearest vertex of the rest of the body") {
