@@ -73,7 +73,7 @@ std::vector<char> near_ends(const std::array<double, kLimbs>& distances, double 
   return out;
 }
 
-// Of the ends that are near the body in the reference the share that is so here, too.
+// The share of the ends near the body in the reference that are near it here, too.
 std::optional<double> kept_share(const ClipPlaces& here, const ClipPlaces& reference) {
   std::size_t all = 0, kept = 0;
   for (std::size_t f = 0; f < std::min(here.end_near.size(), reference.end_near.size()); ++f) {

@@ -26,7 +26,7 @@ struct Unit {
   std::size_t number = 0;  // of the character's own clips
 };
 
-// What one thread needs to score clips of a character.
+// A thread has one, to score clips of a character.
 struct Worker {
   Worker(const std::string& asset, const LibraryCharacter& character, const ScoreJob& job)
       : animated(OpenAsset(asset, character.name), character.name, character.file.string(), {}, {0, job.fps}),

@@ -12,7 +12,7 @@ namespace {
 constexpr int kDepth = 5;  // a triangle that is crossed is cut in four so often, where a line is near
 
 // A region that is bounded by a line that does not close is inside and outside: its corners on lines do not agree.
-constexpr double kMostVotes = 0.75;
+constexpr double kAgreement = 0.75;
 
 // Corners of crossed triangles.
 struct Votes {
@@ -149,7 +149,7 @@ Swallowed SwallowedSkin::measure(const std::vector<Vec3>& positions, const std::
         lead_on(vertex);
       }
     }
-    if (!is_counted || sum.behind < kMostVotes * sum.all) continue;
+    if (!is_counted || sum.behind < kAgreement * sum.all) continue;
     for (const Index t : region) flux.add(corner(t, 0), corner(t, 1), corner(t, 2));
   }
   if (flux.area == 0) return {};

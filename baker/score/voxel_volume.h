@@ -16,7 +16,7 @@ class VoxelVolume {
 
   // `triangles` must outlive it.
   VoxelVolume(const std::vector<Vec3>& rest, const std::vector<Triangle>& triangles);
-  // Of the same triangles in a pose; 0 to 1.
+  // The share in a pose of the same triangles, 0 to 1.
   double share(const std::vector<Vec3>& positions, double voxel) const;
 
  private:
