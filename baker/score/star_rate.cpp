@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <nanoflann.hpp>
 
 namespace spherechain::baker {
@@ -20,65 +21,81 @@ struct Cloud {
   }
 };
 
-// The skin without a limb and what the limb hangs on.
-class SkinWithout {
- public:
-  SkinWithout(const ScoredSkin& skin, const std::vector<Vec3>& positions, ScoredLimb limb)
-      : cloud_(cloud_of(skin, positions, limb)), tree_(3, cloud_) {}
+// The nearest of the vertices that were looked at; of equally near ones the first.
+struct Nearest {
+  Index vertex = kNoIndex;
+  double squared = HUGE_VAL;
+  const std::vector<Index>* vertices = nullptr;  // of the tree's points
 
-  // The nearest vertex.
-  Index nearest(const Vec3& to) const {
-    std::uint32_t at = 0;
-    double squared = 0;
-    tree_.knnSearch(to.data(), 1, &at, &squared);
-    return cloud_.vertices[at];
+  using DistanceType = double;
+  using CountType = std::size_t;
+  std::size_t size() const { return 1; }
+  bool full() const { return true; }
+  double worstDist() const { return squared; }
+  bool addPoint(double to, std::uint32_t point) {
+    if (to < squared) {
+      squared = to;
+      vertex = (*vertices)[point];
+    }
+    return true;
   }
+};
 
- private:
-  static Cloud cloud_of(const ScoredSkin& skin, const std::vector<Vec3>& positions, ScoredLimb limb) {
-    Cloud out;
+// The skin in pieces: each limb with what it hangs on, and the rest.
+class Pieces {
+ public:
+  Pieces(const ScoredSkin& skin, const std::vector<Vec3>& positions) {
     for (Index v = 0; v < positions.size(); ++v) {
       const VertexPlace& place = skin.places[v];
-      if ((place.is_on_limb || place.is_beside_limb) && place.limb == limb) continue;
-      out.points.push_back(positions[v]);
-      out.vertices.push_back(v);
+      Cloud& cloud = clouds_[place.is_on_limb || place.is_beside_limb ? static_cast<std::size_t>(place.limb) : kLimbs];
+      cloud.points.push_back(positions[v]);
+      cloud.vertices.push_back(v);
+    }
+    for (const Cloud& cloud : clouds_) trees_.push_back(std::make_unique<Tree>(3, cloud));
+  }
+
+  // The nearest vertex to a point that is on no piece of this limb.
+  Nearest nearest(const Vec3& to, ScoredLimb without) const {
+    Nearest out;
+    for (std::size_t piece = clouds_.size(); piece-- > 0;) {
+      if (piece == static_cast<std::size_t>(without) || clouds_[piece].points.empty()) continue;
+      out.vertices = &clouds_[piece].vertices;
+      trees_[piece]->findNeighbors(out, to.data(), {});
     }
     return out;
   }
 
-  using Metric = nanoflann::L2_Simple_Adaptor<double, Cloud>;
-  Cloud cloud_;
-  nanoflann::KDTreeSingleIndexAdaptor<Metric, Cloud, 3, std::uint32_t> tree_;
+ private:
+  using Tree =
+      nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t>;
+  std::array<Cloud, kLimbs + 1> clouds_;
+  std::vector<std::unique_ptr<Tree>> trees_;
 };
 
 }  // namespace
 
 StarCount count_star(const ScoredSkin& skin, const std::vector<Vec3>& positions, const std::vector<Vec3>& normals) {
   StarCount out;
-  for (std::size_t l = 0; l < kLimbs; ++l) {
-    const auto limb = static_cast<ScoredLimb>(l);
-    const SkinWithout others(skin, positions, limb);
-    for (Index v = 0; v < positions.size(); ++v) {
-      if (!skin.places[v].is_on_limb || skin.places[v].limb != limb) continue;
-      const Index nearest = others.nearest(positions[v]);
-      ++out.vertices;
-      if ((positions[nearest] - positions[v]).dot(normals[nearest]) > 0) ++out.inside;
-    }
+  const Pieces pieces(skin, positions);
+  for (Index v = 0; v < positions.size(); ++v) {
+    if (!skin.places[v].is_on_limb) continue;
+    ++out.vertices;
+    const Nearest found = pieces.nearest(positions[v], skin.places[v].limb);
+    if (found.vertex != kNoIndex && (positions[found.vertex] - positions[v]).dot(normals[found.vertex]) > 0)
+      ++out.inside;
   }
   return out;
 }
 
 std::array<double, kLimbs> ends_from_body(const ScoredSkin& skin, const std::vector<Vec3>& positions) {
+  const Pieces pieces(skin, positions);
   std::array<double, kLimbs> out;
-  for (std::size_t l = 0; l < kLimbs; ++l) {
-    const auto limb = static_cast<ScoredLimb>(l);
-    const SkinWithout others(skin, positions, limb);
-    out[l] = HUGE_VAL;
-    for (Index v = 0; v < positions.size(); ++v) {
-      const VertexPlace& place = skin.places[v];
-      if (place.is_end && place.limb == limb)
-        out[l] = std::min(out[l], (positions[others.nearest(positions[v])] - positions[v]).norm());
-    }
+  out.fill(HUGE_VAL);
+  for (Index v = 0; v < positions.size(); ++v) {
+    const VertexPlace& place = skin.places[v];
+    if (!place.is_end) continue;
+    double& least = out[static_cast<std::size_t>(place.limb)];
+    least = std::min(least, std::sqrt(pieces.nearest(positions[v], place.limb).squared));
   }
   return out;
 }

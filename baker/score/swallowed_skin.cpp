@@ -122,31 +122,32 @@ Swallowed SwallowedSkin::measure(const std::vector<Vec3>& positions, const std::
       ++vote.all;
     }
   }
-  std::vector<char> is_taken(skin_.triangles.size(), 0);
+  std::vector<char> is_taken(skin_.triangles.size(), 0), is_seen(skin_.rest.size(), 0);
+  for (const auto& [t, of] : lines) is_taken[t] = 1;
+  std::vector<Index> region, corners;
   for (const auto& [start, vote] : votes) {
+    if (is_seen[start] != 0) continue;
     // The triangles that lines bound, from one line to the next.
-    std::vector<Index> region;
-    Votes sum = vote;
-    bool is_counted = counted.contains(start);
-    const auto lead_on = [&](Index vertex) {
-      for (const Index t : triangles_at_[vertex]) {
-        if (is_taken[t] != 0 || lines.contains(t)) continue;
+    region.clear();
+    corners.assign({start});
+    is_seen[start] = 1;
+    Votes sum;
+    bool is_counted = false;
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      if (const auto found = votes.find(corners[c]); found != votes.end()) {
+        sum.behind += found->second.behind;
+        sum.all += found->second.all;
+        is_counted |= counted.contains(corners[c]);
+      }
+      for (const Index t : triangles_at_[corners[c]]) {
+        if (is_taken[t] != 0) continue;
         is_taken[t] = 1;
         region.push_back(t);
-      }
-    };
-    lead_on(start);
-    std::set<Index> corners{start};
-    for (std::size_t r = 0; r < region.size(); ++r) {
-      for (const Index v : skin_.triangles[region[r]]) {
-        const Index vertex = skin_.joined[v];
-        if (!corners.insert(vertex).second) continue;
-        if (const auto more = votes.find(vertex); more != votes.end()) {
-          sum.behind += more->second.behind;
-          sum.all += more->second.all;
-          is_counted |= counted.contains(vertex);
+        for (const Index v : skin_.triangles[t]) {
+          const Index vertex = skin_.joined[v];
+          if (is_seen[vertex] == 0) corners.push_back(vertex);
+          is_seen[vertex] = 1;
         }
-        lead_on(vertex);
       }
     }
     if (!is_counted || sum.behind < kAgreement * sum.all) continue;
