@@ -2,8 +2,12 @@
 // `spherechain check --fix`: the characters of a library that have faults, mended into a folder.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "temporary_folder.h"
 #include "tool.h"
@@ -115,4 +119,38 @@ TEST_CASE("check writes no mended character where the next check would read it, 
   CHECK(tool::files_in(library.folder.path / "lib") == 2);
   CHECK(tool::files_in(library.folder.path / "takes") == 1);
   CHECK(library.check("").code == 6);  // beside it
+}
+
+// Deeper than this, in mm, for the files hold single floats, and a limit may lie between two of them.
+constexpr double kSameMeasure = 10;
+
+TEST_CASE("characters of SPHERECHAIN_TEST_DATA: check finds no fault in a mended file that fix does not report" *
+          doctest::skip(std::getenv("SPHERECHAIN_TEST_DATA") == nullptr)) {
+  const TemporaryFolder folder;
+  const auto path = [&](const char* name) { return (folder.path / name).string(); };
+  const auto parts_of = [](const json& event) { return event["parts"].get<std::set<std::string>>(); };
+  for (const char* file :
+       {"mh_boxing.glb", "Fox.glb", "quaternius_robot.glb", "quaternius_spider.glb", "heavy/heavy_woman_boxing.glb",
+        "heavy/very_heavy_man_walk.glb", "heavy/bulky_man_boxing.glb", "godette_cmu.glb"}) {
+    CAPTURE(file);
+    tool::run("fix " + std::string(std::getenv("SPHERECHAIN_TEST_DATA")) + "/" + file + " --force -o " +
+              path("mended.glb") + " --report " + path("report"));
+    tool::run("check " + path("mended.glb") + " -o " + path("check") + " --json " + path("check.json"));
+    std::map<std::string, json> reported;
+    for (const json& clip : json::parse(tool::contents(path("report/fix.json")))["clips"])
+      reported[clip["clip"]] = clip["events"];
+    for (const json& clip : json::parse(tool::contents(path("check.json")))["clips"]) {
+      for (const json& found : clip["events"]) {
+        const bool is_fault = found["class"] == "penetration" || found["class"] == "inside";
+        if (!is_fault || found["depth_mm"].get<double>() < kSameMeasure) continue;
+        CAPTURE(found);
+        const json& events = reported[clip["clip"]];
+        CHECK(std::any_of(events.begin(), events.end(), [&](const json& event) {
+          return parts_of(event) == parts_of(found) && event["outcome"] != "cleared" &&
+                 event["from"].get<double>() - 8 <= found["to"].get<double>() &&
+                 found["from"].get<double>() <= event["to"].get<double>() + 8;
+        }));
+      }
+    }
+  }
 }
