@@ -88,7 +88,7 @@ struct FixOptions {
 ExitCode run_fix(const FixOptions& options);
 
 struct ScoreOptions {
-  std::vector<std::string> library, bodies, metrics, keep_below;
+  std::vector<std::string> library, bodies, metrics, keep_below, keep_above;
   std::string output, motion, clip, reference, character;
   GivenSize size;
   double fps = 0;  // 0: each clip's own

@@ -382,14 +382,18 @@ int main(int argc, char** argv) {
   add_name(*score_command, "--clip", score.clip, "One of the characters' own clips: its name or number (default: all)")
       ->excludes(score_motion);
   add_name(*score_command, "--reference", score.reference,
-           "What clips are compared with: the name of one of them, or a recording");
+           "What clips are compared with: the name of one, a recording, or a folder of them or a character by names");
   score_command->add_option("--metrics", score.metrics, "Metrics to measure, with commas between (default: all)")
       ->allow_extra_args(false)
       ->delimiter(',')
       ->check(refuse_empty);
   score_command
       ->add_option("--keep-below", score.keep_below,
-                   "METRIC=NUMBER, with commas between: write keep.txt and drop.txt, by whether all are below")
+                   "METRIC=NUMBER, with commas between: list the clips to keep, in which all are below, and the others")
+      ->allow_extra_args(false)
+      ->delimiter(',')
+      ->check(refuse_empty);
+  score_command->add_option("--keep-above", score.keep_above, "The same of metrics of which more is better")
       ->allow_extra_args(false)
       ->delimiter(',')
       ->check(refuse_empty);

@@ -25,7 +25,7 @@ constexpr const char* kScoreKind = "score";
 
 bool is_score_file(const std::string& name) {
   return name == "score.json" || name == "score.csv" || name == "index.html" || name == "keep.txt" ||
-         name == "drop.txt";
+         name == "drop.txt" || name == "unmeasured.txt";
 }
 
 bool is_metric(const std::string& name) {
@@ -39,23 +39,24 @@ bool is_metric(const std::string& name) {
 }
 
 // "fault_frames=0.05"
-std::vector<std::pair<std::string, double>> limits_of(const ScoreOptions& options) {
-  std::vector<std::pair<std::string, double>> out;
-  for (const std::string& limit : options.keep_below) {
-    const std::size_t at = limit.find('=');
-    const std::string name = limit.substr(0, at), number = at == std::string::npos ? "" : limit.substr(at + 1);
+void add_limits(const char* option, const std::vector<std::string>& texts, bool is_above, std::vector<Limit>& to) {
+  for (const std::string& text : texts) {
+    const std::size_t at = text.find('=');
+    const std::string name = text.substr(0, at), number = at == std::string::npos ? "" : text.substr(at + 1);
     char* end = nullptr;
     const double value = std::strtod(number.c_str(), &end);
     if (number.empty() || *end != '\0' || std::isnan(value)) {
-      throw Error(ExitCode::kUsage, "--keep-below: '" + limit + "' is no METRIC=NUMBER (fault_frames=0.05)");
+      throw Error(ExitCode::kUsage, fmt::format("{}: '{}' is no METRIC=NUMBER (fault_frames=0.05)", option, text));
     }
-    if (!is_metric(name)) fail_metric("--keep-below", name);
-    out.emplace_back(name, value);
+    if (!is_metric(name)) fail_metric(option, name);
+    if (is_share(name) && value > 1) {
+      throw Error(ExitCode::kUsage, fmt::format("{}: {} is a share, from 0 to 1, not {}", option, name, number));
+    }
+    to.push_back({name, value, is_above});
   }
-  return out;
 }
 
-ScoreJob job_of(const ScoreOptions& options, const std::vector<std::pair<std::string, double>>& limits) {
+ScoreJob job_of(const ScoreOptions& options, const std::vector<Limit>& limits) {
   ScoreJob job;
   CheckConfig config = default_config();
   if (!options.character.empty()) config.bake.import.character = options.character;
@@ -70,8 +71,8 @@ ScoreJob job_of(const ScoreOptions& options, const std::vector<std::pair<std::st
   for (const std::string& metric : job.metrics) {
     if (!is_metric(metric)) fail_metric("--metrics", metric);
   }
-  for (const auto& [name, value] : limits) {
-    if (!job.metrics.empty()) job.metrics.insert(name);
+  for (const Limit& limit : limits) {
+    if (!job.metrics.empty()) job.metrics.insert(limit.metric);
   }
   return job;
 }
@@ -80,7 +81,9 @@ ScoreJob job_of(const ScoreOptions& options, const std::vector<std::pair<std::st
 
 ExitCode run_score(const ScoreOptions& options) {
   const fs::path page = installed_page("report_score.html");  // now: a long run may outlive its program's file
-  const std::vector<std::pair<std::string, double>> limits = limits_of(options);
+  std::vector<Limit> limits;
+  add_limits("--keep-below", options.keep_below, false, limits);
+  add_limits("--keep-above", options.keep_above, true, limits);
   OwnFolder::check(options.output, kScoreKind, is_score_file);
   const ScoreJob job = job_of(options, limits);
   std::vector<ScoreRow> rows;
@@ -88,14 +91,18 @@ ExitCode run_score(const ScoreOptions& options) {
     Progress progress("score");
     rows = score_library(job, [&](const std::string& doing) { progress.show(doing); });
   }
+  if (std::all_of(rows.begin(), rows.end(), [](const ScoreRow& row) { return !row.error.empty(); })) {
+    throw Error(ExitCode::kFile, rows.empty() ? "nothing to score" : rows[0].error);
+  }
   const std::string json = score_json(rows, options.reference), csv = score_csv(rows);
   OwnFolder folder(options.output, kScoreKind);
   folder.write("score.json", json);
   folder.write("score.csv", csv);
   if (!limits.empty()) {
-    const std::array<std::string, 2> lists = keep_below(rows, limits);
+    const std::array<std::string, 3> lists = keep_lists(rows, limits);
     folder.write("keep.txt", lists[0]);
     folder.write("drop.txt", lists[1]);
+    folder.write("unmeasured.txt", lists[2]);
   }
   if (fs::is_regular_file(page)) {
     folder.write("index.html", PageTemplate(page.string()).fill(nlohmann::ordered_json::parse(json)));
@@ -103,6 +110,9 @@ ExitCode run_score(const ScoreOptions& options) {
     say(stderr, "spherechain: warning: no page: {} is not there (it is built where Node and npm are)\n", page.string());
   }
   folder.finish();
+  for (const ScoreRow& row : rows) {
+    if (!row.error.empty()) say(stderr, "spherechain: warning: not scored: {}\n", one_line(row.error));
+  }
   say("{}", options.json ? json : options.csv ? csv : score_text(rows));
   if (!options.json && !options.csv) say("wrote {}: score.json, score.csv and index.html\n", options.output);
   const bool has_failed = std::any_of(rows.begin(), rows.end(), [](const ScoreRow& row) { return !row.error.empty(); });

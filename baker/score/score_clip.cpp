@@ -87,6 +87,15 @@ std::optional<double> kept_share(const ClipPlaces& here, const ClipPlaces& refer
   return static_cast<double>(kept) / static_cast<double>(all);
 }
 
+// Against the first joint: where the character stands does not count.
+Track from_root(Track joints) {
+  for (std::vector<Vec3>& frame : joints) {
+    const Vec3 root = frame.empty() ? Vec3(Vec3::Zero()) : frame[0];
+    for (Vec3& place : frame) place -= root;
+  }
+  return joints;
+}
+
 Track part_of(const Track& joints, const std::vector<std::size_t>& which) {
   Track out;
   for (const std::vector<Vec3>& frame : joints) {
@@ -97,6 +106,11 @@ Track part_of(const Track& joints, const std::vector<std::size_t>& which) {
 }
 
 }  // namespace
+
+bool is_share(const std::string& metric) {
+  return metric == "fault_frames" || metric == "deeper_than_1cm" || metric == "star_penetration_rate" ||
+         metric.starts_with("voxel_volume") || metric.starts_with("contacts_");
+}
 
 const std::vector<std::string>& metric_names() {
   static const std::vector<std::string> names{"fault_frames",
@@ -232,9 +246,13 @@ ClipScore ClipScorer::score(const ClipFrames& clip, const ClipPlaces* reference,
       std::count_if(found.events.begin(), found.events.end(), [](const Event& event) { return counts(event.kind); }));
   const double seconds = static_cast<double>(frames) / clip.fps;
   const auto ends = [&](std::size_t k, int order) -> std::optional<double> {
-    if (subject_.ends[k].empty()) return {};
+    if (subject_.ends[k].empty() || clip.count <= order) return {};
     return mean_difference(part_of(out.places.joints, subject_.ends[k]), order, clip.fps) / metre;
   };
+  if (reference != nullptr && !reference->joints.empty() &&
+      std::abs(static_cast<int>(reference->joints.size()) - clip.count) > 1) {
+    reference = nullptr;  // it is of another motion
+  }
   const std::optional<double> kept = reference == nullptr ? std::nullopt : kept_share(out.places, *reference);
   const std::vector<std::optional<double>> values{
       share(contacts.depths, 0),
@@ -246,18 +264,19 @@ ClipScore ClipScorer::score(const ClipFrames& clip, const ClipPlaces* reference,
       100 * mean(sums.volume, frames) / volume_,
       mean(static_cast<double>(sums.faces), frames),
       static_cast<double>(contacts.inside) / clip.fps,
-      seconds > 0 ? 60 * events / seconds : 0,
+      clip.count > 1 ? std::optional(60 * events / seconds) : std::nullopt,
       wants_star ? std::optional(mean(static_cast<double>(sums.star.inside), sums.star.vertices)) : std::nullopt,
       mean(sums.far_pairs[0], frames),
       mean(sums.far_pairs[1], frames),
       mean(sums.voxels, frames),
       mean(sums.fine_voxels, frames),
-      has_limmt ? std::optional(limmt_score(limmt, clip.fps)) : std::nullopt,
+      has_limmt && clip.count > 2 ? std::optional(limmt_score(limmt, clip.fps)) : std::nullopt,
       ends(0, 2),
       ends(1, 2),
       ends(0, 3),
-      reference == nullptr ? std::nullopt
-                           : std::optional(100 * mean_distance(out.places.joints, reference->joints) / height),
+      reference == nullptr
+          ? std::nullopt
+          : std::optional(100 * mean_distance(from_root(out.places.joints), from_root(reference->joints)) / height),
       kept,
       kept ? std::optional(1 - *kept) : std::nullopt};
   for (std::size_t m = 0; m < values.size(); ++m) {

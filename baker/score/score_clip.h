@@ -30,6 +30,9 @@ struct ClipPlaces {
   std::vector<std::vector<char>> end_near;  // by looked-at frame: of each limb 1 if its end is near the body
 };
 
+// A metric whose values are from 0 to 1.
+bool is_share(const std::string& metric);
+
 struct ClipScore {
   std::string clip;
   int frames = 0;

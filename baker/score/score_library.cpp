@@ -5,19 +5,26 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <filesystem>
+#include <map>
 #include <mutex>
+#include <optional>
 
 #include "baker/check/run.h"
+#include "baker/import/notes.h"
 #include "baker/mesh/error.h"
 #include "baker/os/child_process.h"
 #include "baker/os/parallel.h"
 #include "baker/pipeline/pipeline.h"
+#include "baker/report/report.h"
 
 namespace spherechain::baker {
 namespace {
 
 namespace fs = std::filesystem;
+
+const ClipPlaces kNone;  // with a reference all places are looked at
 
 // A clip of a character: a recording, or with an empty file one of its own.
 struct Unit {
@@ -30,11 +37,43 @@ struct Unit {
 struct Worker {
   Worker(const std::string& asset, const LibraryCharacter& character, const ScoreJob& job)
       : animated(OpenAsset(asset, character.name), character.name, character.file.string(), {}, {0, job.fps}),
-        scorer(animated, job.metrics) {}
+        scorer(with_joints(animated), job.metrics) {}
+
+  // The automatic rig's, where the character has none.
+  static AnimatedAsset& with_joints(AnimatedAsset& animated) {
+    if (animated.weights().empty()) animated.take_joints();
+    return animated;
+  }
 
   AnimatedAsset animated;
   ClipScorer scorer;
-  bool plays_own = true;
+  bool plays_own = false;
+};
+
+// Files of motion alone: others are characters, whose own clips count.
+bool is_recording_file(const fs::path& file) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  return ending == ".bvh" || ending == ".npz" || ending == ".npy" || ending == ".pkl" || ending == ".csv";
+}
+
+std::string bake_asset(const LibraryCharacter& character, const std::function<void(const std::string&)>& progress) {
+  const Bake baked = bake(character.file, character.config.bake,
+                          [&](const std::string& stage) { progress(character.name + ": " + stage); });
+  if (const std::string note = unit_note(baked); !note.empty()) add_note(character.name + ": " + note);
+  return {reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size()};
+}
+
+// What clips are compared with: one for all, or by the clip's name.
+struct References {
+  std::map<std::string, ClipPlaces> by_name;
+  std::optional<ClipPlaces> of_all;
+
+  const ClipPlaces* find(const std::string& clip) const {
+    if (of_all) return &*of_all;
+    const auto found = by_name.find(clip);
+    return found == by_name.end() ? nullptr : &found->second;
+  }
 };
 
 class CharacterRun {
@@ -47,13 +86,13 @@ class CharacterRun {
     const std::vector<Unit> units = units_of();
     std::vector<ScoreRow> rows(units.size());
     std::vector<std::optional<Worker>> workers(std::min(thread_count(), std::max<std::size_t>(1, units.size())));
-    const std::optional<ClipPlaces> reference = find_reference(workers[0], units);
+    const References references = find_references(workers[0], units);
     std::atomic<std::size_t> done{0};
     run_parallel(workers.size(), units.size(), [&](std::size_t thread, std::size_t u) {
       rows[u].character = character_.name;
       rows[u].score.clip = units[u].name;
       try {
-        rows[u].score = score(workers[thread], units[u], reference ? &*reference : nullptr);
+        rows[u].score = score(workers[thread], units[u], references.find(units[u].name));
         rows[u].score.places = {};
       } catch (const Interrupted&) {
         throw;
@@ -111,18 +150,45 @@ class CharacterRun {
     return out;
   }
 
-  std::optional<ClipPlaces> find_reference(std::optional<Worker>& worker, const std::vector<Unit>& units) {
-    if (job_.reference.empty()) return {};
+  References find_references(std::optional<Worker>& worker, const std::vector<Unit>& units) {
+    References out;
+    if (job_.reference.empty()) return out;
+    const fs::path file = job_.reference;
+    tell("the reference");
     const auto named =
         std::find_if(units.begin(), units.end(), [&](const Unit& unit) { return unit.name == job_.reference; });
-    const Unit unit = named != units.end() ? *named : Unit{fs::path(job_.reference).stem().string(), job_.reference, 0};
-    if (named == units.end() && !fs::exists(job_.reference)) {
+    if (named != units.end()) {
+      out.of_all = score(worker, *named, &kNone).places;
+    } else if (fs::is_directory(file)) {
+      for (const Unit& unit : units) {
+        const fs::path recording = file / unit.recording.filename();
+        if (fs::is_regular_file(recording))
+          out.by_name[unit.name] = score(worker, {unit.name, recording, 0}, &kNone).places;
+      }
+    } else if (!fs::exists(file)) {
       throw Error(ExitCode::kFile,
-                  "--reference: " + job_.reference + " is no clip of " + character_.name + ", and no file");
+                  "--reference: " + job_.reference + ": is no clip of " + character_.name + ", and no file");
+    } else if (is_recording_file(file)) {
+      out.of_all = score(worker, {file.stem().string(), file, 0}, &kNone).places;
+    } else {
+      out = clips_of(file);
     }
-    tell("the reference");
-    static const ClipPlaces kNone;  // with one, all places are looked at
-    return score(worker, unit, &kNone).places;
+    return out;
+  }
+
+  // The clips of another character, such as this one before it was mended.
+  References clips_of(const fs::path& file) {
+    LibraryCharacter other = character_;
+    other.file = file;
+    other.motions.clear();
+    Worker worker(bake_asset(other, progress_), other, job_);
+    worker.animated.play({}, {0, job_.fps});
+    References out;
+    const std::vector<std::string> names = unique_clip_names(worker.animated.character().rig);
+    for (std::size_t c = 0; c < names.size(); ++c)
+      out.by_name[names[c]] = worker.scorer.score(worker.animated.clips()[c], &kNone, [](int) {}).places;
+    if (names.size() == 1) out.of_all = out.by_name.begin()->second;
+    return out;
   }
 
   const LibraryCharacter& character_;
@@ -139,10 +205,7 @@ std::vector<ScoreRow> score_library(const ScoreJob& job, const std::function<voi
   for (const LibraryCharacter& character : job.characters) {
     try {
       if (!character.error.empty()) throw Error(ExitCode::kFile, character.error);
-      const Bake baked = bake(character.file, character.config.bake,
-                              [&](const std::string& stage) { progress(character.name + ": " + stage); });
-      std::string asset(reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size());
-      const std::vector<ScoreRow> rows = CharacterRun(character, job, std::move(asset), progress).run();
+      const std::vector<ScoreRow> rows = CharacterRun(character, job, bake_asset(character, progress), progress).run();
       out.insert(out.end(), rows.begin(), rows.end());
     } catch (const Interrupted&) {
       throw;

@@ -16,9 +16,11 @@ namespace spherechain::baker {
 struct ScoreJob {
   std::vector<LibraryCharacter> characters;  // their recordings, or where they have none their own clips
   std::string clip;                          // of their own only this one: name or number; empty: all
-  std::string reference;                     // a clip by name, or a recording's file, that others are compared with
-  std::set<std::string> metrics;             // empty: all
-  double fps = 0;                            // 0: each clip's own
+  // A clip by name, or a recording, that all are compared with; or a folder of recordings, or a character with clips,
+  // of which each is compared with the one of its name.
+  std::string reference;
+  std::set<std::string> metrics;  // empty: all
+  double fps = 0;                 // 0: each clip's own
 };
 
 struct ScoreRow {
@@ -37,8 +39,15 @@ std::string score_csv(const std::vector<ScoreRow>& rows);
 // A few columns for a console.
 std::string score_text(const std::vector<ScoreRow>& rows);
 
-// Names of the clips that are below all these limits, and of the others: "character<TAB>clip" lines.
-std::array<std::string, 2> keep_below(const std::vector<ScoreRow>& rows,
-                                      const std::vector<std::pair<std::string, double>>& limits);
+// A limit of a metric: values on its good side are kept.
+struct Limit {
+  std::string metric;
+  double number;
+  bool is_above;  // larger is better
+};
+
+// Names of the clips that all limits keep, of those that one drops, and of those that lack a metric: lines of
+// "character<TAB>clip".
+std::array<std::string, 3> keep_lists(const std::vector<ScoreRow>& rows, const std::vector<Limit>& limits);
 
 }  // namespace spherechain::baker

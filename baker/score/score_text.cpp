@@ -6,6 +6,7 @@
 
 #include "baker/report/json_text.h"
 #include "baker/score/score_library.h"
+#include "baker/write/version.h"
 
 namespace spherechain::baker {
 namespace {
@@ -19,6 +20,13 @@ std::optional<double> value_of(const ClipScore& score, const std::string& metric
   return {};
 }
 
+// A name without what would end its line or column.
+std::string one_name(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
+  return name;
+}
+
 // A field of a comma-separated table, in quotes where it has to be.
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -30,7 +38,7 @@ std::string field(const std::string& text) {
 }  // namespace
 
 std::string score_json(const std::vector<ScoreRow>& rows, const std::string& reference) {
-  ordered_json out{{"clips", ordered_json::array()}, {"failed", ordered_json::array()}};
+  ordered_json out{{"writer", kWriter}, {"clips", ordered_json::array()}, {"failed", ordered_json::array()}};
   for (const ScoreRow& row : rows) {
     if (!row.error.empty()) {
       out["failed"].push_back({{"character", row.character}, {"clip", row.score.clip}, {"error", row.error}});
@@ -76,7 +84,7 @@ std::string score_text(const std::vector<ScoreRow>& rows) {
                                             {"far pairs", "far_pairs_50", 1},
                                             {"LIMMT", "limmt", 1}}};
   std::size_t wide = 4;
-  const auto name_of = [](const ScoreRow& row) { return row.character + " " + row.score.clip; };
+  const auto name_of = [](const ScoreRow& row) { return one_name(row.character + " " + row.score.clip); };
   for (const ScoreRow& row : rows) wide = std::max(wide, row.error.empty() ? name_of(row).size() : 0);
   std::string out = fmt::format("{:<{}}  frames", "clip", wide);
   for (const Column& column : kColumns) out += fmt::format("  {:>9}", column.head);
@@ -96,15 +104,17 @@ std::string score_text(const std::vector<ScoreRow>& rows) {
   return out;
 }
 
-std::array<std::string, 2> keep_below(const std::vector<ScoreRow>& rows,
-                                      const std::vector<std::pair<std::string, double>>& limits) {
-  std::array<std::string, 2> out;
+std::array<std::string, 3> keep_lists(const std::vector<ScoreRow>& rows, const std::vector<Limit>& limits) {
+  std::array<std::string, 3> out;
   for (const ScoreRow& row : rows) {
-    const bool is_kept = row.error.empty() && std::all_of(limits.begin(), limits.end(), [&](const auto& limit) {
-                           const std::optional<double> value = value_of(row.score, limit.first);
-                           return value && *value < limit.second;
-                         });
-    out[is_kept ? 0 : 1] += row.character + "\t" + row.score.clip + "\n";
+    if (!row.error.empty()) continue;
+    std::size_t list = 0;
+    for (const Limit& limit : limits) {
+      const std::optional<double> value = value_of(row.score, limit.metric);
+      if (!value) list = 2;
+      if (value && list == 0 && !(limit.is_above ? *value > limit.number : *value < limit.number)) list = 1;
+    }
+    out[list] += one_name(row.character) + "\t" + one_name(row.score.clip) + "\n";
   }
   return out;
 }

@@ -58,6 +58,11 @@ TEST_CASE("score: JSON, CSV and lists hold one clip, whose faults are those of p
   CHECK(csv.find("\narm.glb,swing,120,30,0.075,") != std::string::npos);
   CHECK(tool::contents(files.out / "keep.txt").empty());
   CHECK(tool::contents(files.out / "drop.txt") == "arm.glb\tswing\n");
+  CHECK(files.score("--metrics fault_frames --keep-below fault_frames=0.1,limmt=101 --keep-above limmt=1").code == 0);
+  CHECK(tool::contents(files.out / "keep.txt") == "arm.glb\tswing\n");
+  CHECK(files.score("--metrics fault_frames --keep-below star_penetration_rate=1").code == 0);
+  CHECK(tool::contents(files.out / "unmeasured.txt") == "arm.glb\tswing\n");
+  CHECK(tool::contents(files.out / "drop.txt").empty());
   // The names of all metrics are explained.
   const std::string page = tool::contents(fs::path(SPHERECHAIN_SAMPLES) / "../docs/cli/score.md");
   for (const std::string& name : metric_names()) CHECK_MESSAGE(page.find("`" + name + "`") != std::string::npos, name);
@@ -74,6 +79,16 @@ TEST_CASE("score: clips are compared with a reference, and only what is asked fo
   CHECK(found["clips"][0]["metrics"]["fault_frames"].get<double>() == doctest::Approx(9.0 / 120));
   const json same = json::parse(files.score("--json --metrics joint_shift_percent --reference swing").out);
   CHECK(same["clips"][0]["metrics"]["joint_shift_percent"] == 0);
+  // A character is compared clip by clip, by their names; another number of frames is another motion.
+  CHECK(tool::run("fix " + files.arm.string() + " -o " + (files.folder.path / "mended.glb").string()).code == 0);
+  const json mended = json::parse(tool::run("score " + (files.folder.path / "mended.glb").string() + " -o " +
+                                            files.out.string() + " --json --reference " + files.arm.string())
+                                      .out)["clips"][0]["metrics"];
+  CHECK(mended["fault_frames"] == 0);
+  CHECK(mended["joint_shift_percent"].get<double>() > 0);
+  const fs::path half = files.folder.write("half.bvh", recording_of_arm(std::vector<double>(60, -10)));
+  CHECK(json::parse(files.score("--json --metrics joint_shift_percent --reference " + half.string())
+                        .out)["clips"][0]["metrics"]["joint_shift_percent"] == nullptr);
   CHECK(found["clips"][0]["metrics"]["joint_shift_percent"] >= 0);
 }
 
@@ -89,7 +104,8 @@ TEST_CASE("score: what is wrong is named, and the other characters are scored") 
   const json found = json::parse(tool::contents(files.out / "score.json"));
   CHECK(found["clips"].size() == 1);
   CHECK(found["failed"][0]["character"] == "broken.glb");
-  const tool::Run none = files.score("--clip walk");
-  CHECK(none.code == 3);
-  CHECK(none.out.find("not scored: " + files.arm.string() + ": has no clip 'walk'") != std::string::npos);
+  tool::check_error(files.score("--clip walk"), 3, {"no clip 'walk'"});
+  tool::check_error(files.score("--reference nothing.bvh"), 3, {"nothing.bvh", "no file"});
+  tool::check_error(files.score("--keep-below fault_frames=10"), 2, {"fault_frames is a share"});
+  CHECK(json::parse(tool::contents(files.out / "score.json")) == found);  // as it was
 }
