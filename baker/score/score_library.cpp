@@ -64,7 +64,7 @@ std::string bake_asset(const LibraryCharacter& character, const std::function<vo
   return {reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size()};
 }
 
-// What clips are compared with: one for all, or by the clip's name.
+// A reference is compared with all clips, or is found by the name of each.
 struct References {
   std::map<std::string, ClipPlaces> by_name;
   std::optional<ClipPlaces> of_all;
