@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "baker/import/arrays.h"
 
+#include <fmt/format.h>
+
 #include <cctype>
+#include <cmath>
 #include <fstream>
 
+#include "baker/import/notes.h"
 #include "baker/mesh/error.h"
 
 namespace spherechain::baker {
@@ -55,6 +59,34 @@ Arrays read_arrays(const std::filesystem::path& path) {
     default:
       return {{"", parse_npy(bytes, name)}};
   }
+}
+
+const Array* find_table(const Arrays& arrays, const std::string& name, const std::string& file) {
+  const auto found = arrays.find(name);
+  if (found == arrays.end()) return nullptr;
+  const std::string subject = file + ": " + (name.empty() ? "its table" : "'" + name + "'");
+  const Array& out = found->second;
+  if (!out.refused.empty()) throw Error(ExitCode::kFile, subject + " " + out.refused);
+  constexpr double kLargest = 1e9;
+  for (const double x : out.numbers) {
+    if (!(std::abs(x) <= kLargest)) throw Error(ExitCode::kFile, subject + " has a number that is not finite, or huge");
+  }
+  return &out;
+}
+
+double frame_rate(const Arrays& arrays, const std::string& file, const std::string& outer) {
+  for (const char* name : {"mocap_framerate", "mocap_frame_rate", "fps", "frame_rate"}) {
+    const Array* found = find_table(arrays, outer + name, file);
+    if (found == nullptr) continue;
+    constexpr double kMin = 1e-3, kMax = 1e4;
+    if (found->numbers.size() != 1 || found->numbers[0] < kMin || found->numbers[0] > kMax)
+      throw Error(ExitCode::kFile, fmt::format("{}: '{}' is no number of frames a second", file, name));
+    return found->numbers[0];
+  }
+  constexpr double kUsual = 30;
+  add_note(fmt::format("{}: names no frame rate: {} frames a second are taken (an .npz or a pickle can have 'fps')",
+                       file, kUsual));
+  return kUsual;
 }
 
 }  // namespace spherechain::baker

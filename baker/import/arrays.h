@@ -27,7 +27,15 @@ bool is_arrays(const std::filesystem::path& path);
 // text, a list, a dictionary nor a numpy table is refused by its name. Throws Error(kFile).
 Arrays read_arrays(const std::filesystem::path& path);
 
-// The same on bytes; `file` is for messages. They throw Error(kFile).
+// The table of this name; null where there is none. Throws Error(kFile) that begins with `file` where it could not be
+// read, or holds a number that is not finite or is beyond 1e9.
+const Array* find_table(const Arrays& arrays, const std::string& name, const std::string& file);
+
+// Frames a second, by 'mocap_framerate', 'mocap_frame_rate', 'fps' or 'frame_rate', with `outer` before these names.
+// Where there is none of them, it is 30, and a note (notes.h) says so. Throws Error(kFile).
+double frame_rate(const Arrays& arrays, const std::string& file, const std::string& outer = {});
+
+// read_arrays on bytes; `file` is for messages. They throw Error(kFile).
 Array parse_npy(std::string_view bytes, const std::string& file);
 Arrays parse_npz(std::string_view bytes, const std::string& file);  // a table that cannot be read is `refused`
 Arrays parse_pickle(std::string_view bytes, const std::string& file);

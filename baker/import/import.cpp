@@ -7,13 +7,16 @@
 #include <system_error>
 
 #include "baker/import/archive.h"
+#include "baker/import/array_character.h"
 #include "baker/import/arrays.h"
+#include "baker/import/assimp_glb.h"
 #include "baker/import/glb_file.h"
 #include "baker/import/gltf_file.h"
 #include "baker/import/notes.h"
 #include "baker/import/obj_file.h"
 #include "baker/import/read_bvh.h"
 #include "baker/import/read_in_child.h"
+#include "baker/import/robot_motion.h"
 #include "baker/import/smpl_motion.h"
 #include "baker/mesh/error.h"
 #include "baker/os/access.h"
@@ -41,6 +44,8 @@ bool is_gltf(const std::filesystem::path& path) {
   return start.starts_with("glTF") || (first != start.npos && start[first] == '{');
 }
 
+constexpr const char* kNoMesh = ": is a recording without a mesh (name it by --motion)";
+
 // One bone moves all vertices. Morph targets stay at their weights at rest.
 void make_rigid(SourceMesh& mesh) {
   for (const Morph& morph : mesh.rig.morphs) {
@@ -61,11 +66,16 @@ void make_rigid(SourceMesh& mesh) {
 
 SourceMesh read_with_numpy(const std::filesystem::path& path) {
   const Arrays arrays = read_arrays(path);
+  if (auto character = array_character(arrays, path.string())) return std::move(*character);
   SourceMesh mesh;
   mesh.importer = "numpy";
   if (auto motion = smpl_motion(arrays, path.string())) {
     mesh.rig = std::move(*motion);
     return mesh;
+  }
+  if (robot_motion(arrays, path.string())) {
+    throw Error(ExitCode::kFile,
+                path.string() + ": is the motion of a robot (play it on that robot: a URDF or MJCF file)");
   }
   std::string names;
   for (const auto& [name, array] : arrays) {
@@ -168,9 +178,15 @@ SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& o
 std::string read_as_glb(const std::filesystem::path& path) {
   check_regular_file(path);
   if (is_recording(path) && !is_gltf(path)) {
-    throw Error(ExitCode::kFile, path.string() + ": is a recording without a mesh (name it by --motion)");
+    throw Error(ExitCode::kFile, path.string() + kNoMesh);
   }
-  return read_in_child(path.string(), [&] { return is_gltf(path) ? pack_gltf(path) : glb_with_assimp(path); });
+  return read_in_child(path.string(), [&] {
+    if (is_gltf(path)) return pack_gltf(path);
+    if (!is_arrays(path)) return glb_with_assimp(path);
+    const SourceMesh mesh = read_with_numpy(path);
+    if (mesh.triangles.empty()) throw Error(ExitCode::kFile, path.string() + kNoMesh);
+    return glb_of(mesh);
+  });
 }
 
 Character import_character(const std::filesystem::path& path, const ImportOptions& options) {

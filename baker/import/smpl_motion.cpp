@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "baker/import/notes.h"
 #include "baker/mesh/error.h"
 
 namespace spherechain::baker {
 namespace {
 
 constexpr std::size_t kBody = 22;  // joints that all of SMPL's kin share
-constexpr double kUsualRate = 30;
 
 // A joint at rest: metres from its parent to the left, up and forward.
 struct SmplJoint {
@@ -93,7 +91,7 @@ class SmplMotion {
     const std::size_t joints = turns_.width / (is_6d_ ? 6 : 3);
     rig.nodes = smpl_nodes(joints);
     const Table places = travel();
-    const double fps = rate();
+    const double fps = frame_rate(arrays_, file_);
     Clip clip;
     clip.name = "Motion";
     clip.in_file = 0;
@@ -119,12 +117,7 @@ class SmplMotion {
  private:
   [[noreturn]] void fail(const std::string& what) const { throw Error(ExitCode::kFile, file_ + ": " + what); }
 
-  const Array* find(const std::string& name) const {
-    const auto found = arrays_.find(name);
-    if (found == arrays_.end()) return nullptr;
-    if (!found->second.refused.empty()) fail(fmt::format("'{}' {}", name, found->second.refused));
-    return &found->second;
-  }
+  const Array* find(const std::string& name) const { return find_table(arrays_, name, file_); }
   // The table of one of these names, as a row a frame; nothing where there is none.
   std::optional<Table> table(std::initializer_list<const char*> names) const {
     for (const char* name : names) {
@@ -137,12 +130,7 @@ class SmplMotion {
     const std::string quoted = name.empty() ? "its table" : "'" + name + "'";
     if (array.shape.size() < 2 || array.shape.size() > 3 || !array.texts.empty())
       fail(fmt::format("{} is no table of numbers with a row a frame", quoted));
-    Table out{array.shape[0], array.numbers.size() / std::max<std::size_t>(array.shape[0], 1), array.numbers};
-    constexpr double kLargest = 1e6;
-    for (const double x : out.numbers) {
-      if (!(std::abs(x) <= kLargest)) fail(fmt::format("{} has a number that is not finite, or huge", quoted));
-    }
-    return out;
+    return {array.shape[0], array.numbers.size() / std::max<std::size_t>(array.shape[0], 1), array.numbers};
   }
 
   // Sets the rotations, from the first of the layouts that the file has.
@@ -259,20 +247,6 @@ class SmplMotion {
       fail(fmt::format("'trans' has {} rows of {} numbers; the poses have {} frames, with 3", out->frames, out->width,
                        turns_.frames));
     return *out;
-  }
-
-  double rate() const {
-    for (const char* name : {"mocap_framerate", "mocap_frame_rate", "fps", "frame_rate", "framerate"}) {
-      const Array* array = find(name);
-      if (array == nullptr) continue;
-      constexpr double kMin = 1e-3, kMax = 1e4;
-      if (array->numbers.size() != 1 || !(array->numbers[0] >= kMin && array->numbers[0] <= kMax))
-        fail(fmt::format("'{}' is no number of frames a second", name));
-      return array->numbers[0];
-    }
-    add_note(fmt::format("{}: names no frame rate: {} frames a second are taken (an .npz can have 'fps')", file_,
-                         kUsualRate));
-    return kUsualRate;
   }
 
   // The axis times the angle.
