@@ -11,9 +11,9 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr std::size_t kBody = 22;  // joints that all of SMPL's kin share
+constexpr Index kBody = 22;  // joints that all of SMPL's kin begin with
 
-// A joint at rest: metres from its parent to the left, up and forward.
+// A joint at rest, of an average person: metres from its parent to the left, up and forward.
 struct SmplJoint {
   const char* name;
   int parent;
@@ -30,46 +30,22 @@ constexpr SmplJoint kBodyJoints[kBody] = {
     {"right_wrist", 19, -0.25, 0, 0},
 };
 
-Node node_of(const std::string& name, int parent, const Vec3& offset) {
-  Node node;
-  node.name = name;
-  node.parent = parent;
-  node.translation = offset;
-  node.local.translation() = offset;
-  return node;
-}
+bool is_body(std::size_t joints) { return joints == kBody || joints == 24 || joints == 52 || joints == 55; }
 
-// The joints of SMPL (24), SMPL-H (52) and SMPL-X (55), or the body's alone (22). Empty for other numbers.
-std::vector<Node> smpl_nodes(std::size_t count) {
-  if (count != kBody && count != 24 && count != 52 && count != 55) return {};
+// The body's joints, and where the hands end. Others (fingers, jaw, eyes) are carried to no character.
+std::vector<Node> smpl_nodes() {
   std::vector<Node> out;
-  for (const SmplJoint& joint : kBodyJoints)
-    out.push_back(node_of(joint.name, joint.parent, {joint.left, joint.up, joint.forward}));
-  if (count == 24) {
-    out.push_back(node_of("left_hand", 20, {0.08, 0, 0}));
-    out.push_back(node_of("right_hand", 21, {-0.08, 0, 0}));
-  }
-  if (count == 55) {
-    out.push_back(node_of("jaw", 15, {0, 0, 0.03}));
-    out.push_back(node_of("left_eye_smplhf", 15, {0.03, 0.06, 0.08}));
-    out.push_back(node_of("right_eye_smplhf", 15, {-0.03, 0.06, 0.08}));
-  }
-  if (count > 24) {
-    for (int hand = 0; hand < 2; ++hand) {
-      const double side = hand == 0 ? 1 : -1;
-      double forward = 0.03;
-      for (const char* finger : {"index", "middle", "pinky", "ring", "thumb"}) {
-        const bool is_thumb = std::string_view(finger) == "thumb", is_pinky = std::string_view(finger) == "pinky";
-        forward = is_thumb ? 0.03 : is_pinky ? -0.04 : forward;
-        for (int link = 1; link <= 3; ++link) {
-          const Vec3 offset(side * (link > 1 ? 0.03 : is_thumb ? 0.03 : 0.09), 0, link > 1 ? 0 : forward);
-          const int parent = link > 1 ? static_cast<int>(out.size()) - 1 : 20 + hand;
-          out.push_back(node_of(fmt::format("{}_{}{}", hand == 0 ? "left" : "right", finger, link), parent, offset));
-        }
-        forward = is_pinky ? -0.02 : 0.01;
-      }
-    }
-  }
+  const auto add = [&](const char* name, int parent, const Vec3& offset) {
+    Node node;
+    node.name = name;
+    node.parent = parent;
+    node.translation = offset;
+    node.local.translation() = offset;
+    out.push_back(std::move(node));
+  };
+  for (const SmplJoint& joint : kBodyJoints) add(joint.name, joint.parent, {joint.left, joint.up, joint.forward});
+  add("left_hand", 20, {0.15, 0, 0});
+  add("right_hand", 21, {-0.15, 0, 0});
   return out;
 }
 
@@ -86,21 +62,19 @@ class SmplMotion {
 
   std::optional<SourceRig> read() {
     if (!find_turns()) return std::nullopt;
-    if (turns_.frames == 0) fail("has no frames");
     SourceRig rig;
-    const std::size_t joints = turns_.width / (is_6d_ ? 6 : 3);
-    rig.nodes = smpl_nodes(joints);
+    rig.nodes = smpl_nodes();
     const Table places = travel();
     const double fps = frame_rate(arrays_, file_);
     Clip clip;
     clip.name = "Motion";
     clip.in_file = 0;
     clip.duration = static_cast<double>(turns_.frames - 1) / fps;
-    for (Index j = 0; j < joints; ++j)
+    for (Index j = 0; j < kBody; ++j)
       clip.channels.push_back({ChannelPath::kRotation, j, Interpolation::kLinear, {}, {}});
     if (places.frames > 0) clip.channels.push_back({ChannelPath::kTranslation, 0, Interpolation::kLinear, {}, {}});
     for (std::size_t f = 0; f < turns_.frames; ++f) {
-      for (Index j = 0; j < joints; ++j) {
+      for (Index j = 0; j < kBody; ++j) {
         const Eigen::Quaterniond turn = is_6d_ ? turn_of_6d(f, j) : turn_of_axis(f, j);
         clip.channels[j].values.insert(clip.channels[j].values.end(), turn.coeffs().begin(), turn.coeffs().end());
       }
@@ -130,7 +104,8 @@ class SmplMotion {
     const std::string quoted = name.empty() ? "its table" : "'" + name + "'";
     if (array.shape.size() < 2 || array.shape.size() > 3 || !array.texts.empty())
       fail(fmt::format("{} is no table of numbers with a row a frame", quoted));
-    return {array.shape[0], array.numbers.size() / std::max<std::size_t>(array.shape[0], 1), array.numbers};
+    if (array.shape[0] == 0) fail(fmt::format("{} has no frames", quoted));
+    return {array.shape[0], array.numbers.size() / array.shape[0], array.numbers};
   }
 
   // Sets the rotations, from the first of the layouts that the file has.
@@ -156,7 +131,7 @@ class SmplMotion {
 
   bool take_angles(Table angles) {
     turns_ = std::move(angles);
-    if (turns_.width % 3 == 0 && !smpl_nodes(turns_.width / 3).empty()) return true;
+    if (turns_.width % 3 == 0 && is_body(turns_.width / 3)) return true;
     fail(fmt::format("has {} angles a frame; 66 (body), 72 (SMPL), 156 (SMPL-H) and 165 (SMPL-X) are read",
                      turns_.width));
   }
@@ -168,7 +143,7 @@ class SmplMotion {
     std::size_t first = 0;
     bool is_mixed = false;
     for (const std::size_t travel : {0, 3}) {
-      if (all.width < travel || (all.width - travel) % 6 != 0 || smpl_nodes((all.width - travel) / 6).empty()) continue;
+      if (all.width < travel || (all.width - travel) % 6 != 0 || !is_body((all.width - travel) / 6)) continue;
       for (const std::size_t before : travel == 0 ? std::vector<std::size_t>{0} : std::vector<std::size_t>{0, 3}) {
         for (const bool mixed : {false, true}) {
           if (!are_axes(all, before, all.width - travel, mixed)) continue;
@@ -213,7 +188,7 @@ class SmplMotion {
           return false;
       }
     }
-    return all.frames > 0;
+    return true;
   }
 
   // The axes are columns of the joint's matrix (Zhou et al.) or its rows (PyTorch3D), which is the opposite turn. Knees
