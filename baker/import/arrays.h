@@ -17,7 +17,8 @@ struct Array {
   std::string refused;             // why it could not be read; empty where it was
 };
 
-// Tables by name. That of an .npy file has the empty name; a table in nested dictionaries of a pickle is "outer/inner".
+// Tables by name. The table of an .npy file has the empty name; a table in nested dictionaries of a pickle is
+// "outer/inner".
 using Arrays = std::map<std::string, Array>;
 
 // True if a file is an .npy, an .npz or a pickle by its content, or says so by its ending.

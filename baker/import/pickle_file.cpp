@@ -205,7 +205,7 @@ class PickleMachine {
     stack_.push_back(values_.size() - 1);
   }
   void push_number(double number) { push({Kind::kNumber, number}); }
-  // Of any length, the lowest byte first, in two's complement.
+  // A whole number of any length: the lowest byte comes first, in two's complement.
   void push_long(std::uint64_t size) {
     const std::string_view bytes = take(size);
     double out = 0;

@@ -153,7 +153,7 @@ TEST_CASE("z up, as in AMASS, or y up, and any way to write the same poses down,
         kSameJoint);
 }
 
-TEST_CASE("6D rotations are told apart: columns or rows, travel in front or behind, axes mixed or not") {
+TEST_CASE("the kind of 6D rotations is found: columns or rows, travel in front or behind, axes mixed or not") {
   const TemporaryFolder folder;
   const CaptureMotion motion = on_human(folder.write("a.npz", amass(kSteps)));
   const auto written = [&](const std::vector<SmplFrame>& frames, bool rows, bool mixed, int travel) {
