@@ -88,7 +88,8 @@ Motions motions_at(const fs::path& path, Folders& looked_at) {
   Motions out;
   for (const Found& found : files_below(path, may_be_motion, looked_at))
     out.push_back({as_utf8(found.path.lexically_relative(path).string()), found.path, found.error});
-  if (out.empty()) throw Error(ExitCode::kFile, path.string() + ": has no recordings (BVH, FBX, glTF, Collada or .npz)");
+  if (out.empty())
+    throw Error(ExitCode::kFile, path.string() + ": has no recordings (BVH, FBX, glTF, Collada or .npz)");
   return out;
 }
 

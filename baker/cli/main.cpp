@@ -275,7 +275,8 @@ int main(int argc, char** argv) {
   add_name(*filter_command, "ASSET", filter.asset, "Asset (.sphc)")->required();
   add_name(*filter_command, "--source", filter.source, "The mesh it was baked from")->required();
   add_name(*filter_command, "--motion", filter.motion,
-           "File of motion capture (BVH, FBX, Collada, AMASS), or folder or .txt list of meshes, besides the source's clips");
+           "File of motion capture (BVH, FBX, Collada, AMASS), or folder or .txt list of meshes, besides the source's "
+           "clips");
   filter_command->add_option("--poses", filter.poses, "Number of random poses within joint limits")
       ->check(CLI::Range(0, 10000000))
       ->capture_default_str();
