@@ -74,9 +74,9 @@ const Array* find_table(const Arrays& arrays, const std::string& name, const std
   return &out;
 }
 
-double frame_rate(const Arrays& arrays, const std::string& file, const std::string& outer) {
+double frame_rate(const Arrays& arrays, const std::string& file) {
   for (const char* name : {"mocap_framerate", "mocap_frame_rate", "fps", "frame_rate"}) {
-    const Array* found = find_table(arrays, outer + name, file);
+    const Array* found = find_table(arrays, name, file);
     if (found == nullptr) continue;
     constexpr double kMin = 1e-3, kMax = 1e4;
     if (found->numbers.size() != 1 || found->numbers[0] < kMin || found->numbers[0] > kMax)

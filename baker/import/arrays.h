@@ -18,7 +18,7 @@ struct Array {
 };
 
 // Tables by name. The table of an .npy file has the empty name; a table in nested dictionaries of a pickle is
-// "outer/inner".
+// "outer/inner", but a dictionary with one name around all others is left out.
 using Arrays = std::map<std::string, Array>;
 
 // True if a file is an .npy, an .npz or a pickle by its content, or says so by its ending.
@@ -32,9 +32,9 @@ Arrays read_arrays(const std::filesystem::path& path);
 // read, or holds a number that is not finite or is beyond 1e9.
 const Array* find_table(const Arrays& arrays, const std::string& name, const std::string& file);
 
-// Frames a second, by 'mocap_framerate', 'mocap_frame_rate', 'fps' or 'frame_rate', with `outer` before these names.
-// Where there is none of them, it is 30, and a note (notes.h) says so. Throws Error(kFile).
-double frame_rate(const Arrays& arrays, const std::string& file, const std::string& outer = {});
+// Frames a second, by 'mocap_framerate', 'mocap_frame_rate', 'fps' or 'frame_rate'. Where there is none of them, it is
+// 30, and a note (notes.h) says so. Throws Error(kFile).
+double frame_rate(const Arrays& arrays, const std::string& file);
 
 // read_arrays on bytes; `file` is for messages. They throw Error(kFile).
 Array parse_npy(std::string_view bytes, const std::string& file);

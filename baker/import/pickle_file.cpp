@@ -387,6 +387,11 @@ class TablesOf {
       return;
     }
     if (depth == kDepthMax) fail("has dictionaries in each other without end");
+    // Some programs put all into a dictionary of one name, that of the recording.
+    if (name.empty() && value.items.size() == 2 && machine_.at(value.items[1]).kind == Kind::kDict) {
+      add("", value.items[1], depth + 1);
+      return;
+    }
     for (std::size_t k = 0; k + 1 < value.items.size(); k += 2) {
       const Value& key = machine_.at(value.items[k]);
       if (key.kind != Kind::kText && key.kind != Kind::kBytes) continue;

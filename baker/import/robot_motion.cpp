@@ -41,15 +41,7 @@ class MotionOfArrays {
   MotionOfArrays(const Arrays& arrays, const std::string& file) : arrays_(arrays), file_(file) {}
 
   std::optional<RobotMotion> read() {
-    const Array* joints = nullptr;
-    for (const auto& [name, array] : arrays_) {
-      const std::size_t slash = name.rfind('/');
-      const std::string outer = slash == name.npos ? "" : name.substr(0, slash + 1), inner = name.substr(outer.size());
-      if (inner != "dof_pos" && inner != "dof") continue;
-      if (!outer_.empty() && outer != outer_) fail("holds several motions (save each in a file of its own)");
-      outer_ = outer;
-      joints = find_table(arrays_, name, file_);
-    }
+    const Array* joints = find({"dof_pos", "dof"});
     if (joints == nullptr) return std::nullopt;
     const Array *places = find({"root_pos", "root_trans_offset"}), *turns = find({"root_rot"});
     if (places == nullptr || turns == nullptr) fail("has joints of a robot, but no 'root_pos' and 'root_rot'");
@@ -58,7 +50,7 @@ class MotionOfArrays {
     check(*places, "root_pos", frames, 3);
     check(*turns, "root_rot", frames, 4);
     RobotMotion out;
-    out.fps = frame_rate(arrays_, file_, outer_);
+    out.fps = frame_rate(arrays_, file_);
     out.joint_count = joints->numbers.size() / frames;
     out.joint_values = joints->numbers;
     const bool w_first = is_w_first(turns->numbers);
@@ -85,7 +77,7 @@ class MotionOfArrays {
 
   const Array* find(std::initializer_list<const char*> names) const {
     for (const char* name : names) {
-      if (const Array* found = find_table(arrays_, outer_ + name, file_); found != nullptr) return found;
+      if (const Array* found = find_table(arrays_, name, file_); found != nullptr) return found;
     }
     return nullptr;
   }
@@ -102,7 +94,6 @@ class MotionOfArrays {
 
   const Arrays& arrays_;
   const std::string& file_;
-  std::string outer_;
 };
 
 // The tables of a .csv, by GMR's names.

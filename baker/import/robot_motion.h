@@ -25,7 +25,7 @@ struct RobotMotion {
 };
 
 // The motion in the tables of GMR ('fps', 'root_pos', 'root_rot' with w last, 'dof_pos') or of PHC and HumanoidVerse
-// ('root_trans_offset', 'root_rot', 'dof'), also in a dictionary with one name outside. 'dof_names' or 'joint_names'
+// ('root_trans_offset', 'root_rot', 'dof'). 'dof_names' or 'joint_names'
 // name the joints. Nothing where the tables hold no such motion. Adds a note (notes.h) where the file has w first, or
 // names no frame rate. Throws Error(kFile) that begins with `file` where the tables do not fit each other.
 std::optional<RobotMotion> robot_motion(const Arrays& arrays, const std::string& file);

@@ -166,6 +166,14 @@ TEST_CASE("pickles of dictionaries, lists and numpy's tables are read, whatever 
   }
 }
 
+TEST_CASE("a dictionary with one name around all others is left out") {
+  const std::string inner = "}(U\3fpsK\x1eU\1a}U\1bK\2sU\1c}U\1dK\3su";
+  const Arrays arrays = parse_pickle("\x80\2}U\4walk" + inner + "s.", "a.pkl");
+  CHECK(arrays.at("fps").numbers == Numbers{30});
+  CHECK(arrays.at("a/b").numbers == Numbers{2});
+  CHECK(arrays.size() == 3);
+}
+
 TEST_CASE("a pickle that calls a function is refused by the function's name") {
   const auto error = [](const std::string& bytes) { return message_of([&] { parse_pickle(bytes, "a.pkl"); }); };
   CHECK(contains(error("\x80\2cposix\nsystem\nU\7touch x\x85R."), "a.pkl: holds 'posix.system'"));
