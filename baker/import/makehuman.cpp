@@ -44,7 +44,7 @@ json json_of_file(const fs::path& path) {
   return out;
 }
 
-// What a slider stands for: names in the targets' file names, and how much of each.
+// A slider stands for names in the file names of targets, and for a share of each.
 using Shares = std::vector<std::pair<std::string, double>>;
 
 Shares three(const std::string& name, double value) {
