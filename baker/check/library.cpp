@@ -37,8 +37,11 @@ bool may_be_character(const fs::path& file) {
 }
 
 bool may_be_motion(const fs::path& file) {
-  static const std::set<std::string> kExtensions{".bvh", ".fbx", ".glb", ".gltf", ".vrm", ".dae", ".zae"};
-  return kExtensions.count(extension_of(file)) > 0;
+  static const std::set<std::string> kExtensions{".bvh", ".fbx", ".glb", ".gltf", ".vrm", ".dae", ".zae", ".npz"};
+  // AMASS has the shapes of its persons beside their motions.
+  const std::string stem = file.stem().string();
+  const bool is_shape = extension_of(file) == ".npz" && (stem == "shape" || stem.ends_with("_stagei"));
+  return kExtensions.count(extension_of(file)) > 0 && !is_shape;
 }
 
 struct Found {
@@ -85,7 +88,8 @@ Motions motions_at(const fs::path& path, Folders& looked_at) {
   Motions out;
   for (const Found& found : files_below(path, may_be_motion, looked_at))
     out.push_back({as_utf8(found.path.lexically_relative(path).string()), found.path, found.error});
-  if (out.empty()) throw Error(ExitCode::kFile, path.string() + ": has no recordings (BVH, FBX, glTF or Collada)");
+  if (out.empty())
+    throw Error(ExitCode::kFile, path.string() + ": has no recordings (BVH, FBX, glTF, Collada or .npz)");
   return out;
 }
 

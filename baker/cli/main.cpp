@@ -65,7 +65,7 @@ void add_motion(CLI::App& command, MotionChoice& motion, FrameChoice& frames, bo
   add_name(choice, "--clip", motion.clip, "A clip of the source's own: its name or number");
   add_name(choice, "--poses", motion.poses, "Pose file, or a folder or .txt list of meshes that are poses");
   add_name(choice, "--motion", motion.motion,
-           "File of motion capture (BVH, FBX, Collada), or folder or .txt list of meshes that are frames");
+           "File of motion capture (BVH, FBX, Collada, AMASS), or folder or .txt list of meshes that are frames");
   choice.require_option(0, 1);
   command
       .add_option("--frames", frames.count,
@@ -275,7 +275,8 @@ int main(int argc, char** argv) {
   add_name(*filter_command, "ASSET", filter.asset, "Asset (.sphc)")->required();
   add_name(*filter_command, "--source", filter.source, "The mesh it was baked from")->required();
   add_name(*filter_command, "--motion", filter.motion,
-           "File of motion capture (BVH, FBX, Collada), or folder or .txt list of meshes, besides the source's clips");
+           "File of motion capture (BVH, FBX, Collada, AMASS), or folder or .txt list of meshes, besides the source's "
+           "clips");
   filter_command->add_option("--poses", filter.poses, "Number of random poses within joint limits")
       ->check(CLI::Range(0, 10000000))
       ->capture_default_str();

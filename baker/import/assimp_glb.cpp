@@ -320,4 +320,14 @@ std::string glb_of(const aiScene& scene, const AssimpScene& flat, const SourceMe
   return GlbOfScene(scene, flat, source).bytes();
 }
 
+std::string glb_of(const SourceMesh& source) {
+  aiMesh mesh;
+  mesh.mNumVertices = static_cast<unsigned>(source.positions.size());
+  mesh.mName = source.buffers.front().name;
+  AssimpScene flat;
+  flat.nodes = source.rig.nodes;
+  flat.instances.push_back({&mesh, 0, 0, Affine::Identity(), Affine::Identity(), 0, 0});
+  return glb_of(aiScene(), flat, source);
+}
+
 }  // namespace spherechain::baker

@@ -12,5 +12,7 @@ namespace spherechain::baker {
 // have the numbers that they have in `source` (in_file), and vertices their order. A node on top turns and scales where
 // the file has another unit or axis.
 std::string glb_of(const aiScene& scene, const AssimpScene& flat, const SourceMesh& source);
+// The same of one mesh with bones that no scene was read for.
+std::string glb_of(const SourceMesh& source);
 
 }  // namespace spherechain::baker

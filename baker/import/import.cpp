@@ -7,12 +7,17 @@
 #include <system_error>
 
 #include "baker/import/archive.h"
+#include "baker/import/array_character.h"
+#include "baker/import/arrays.h"
+#include "baker/import/assimp_glb.h"
 #include "baker/import/glb_file.h"
 #include "baker/import/gltf_file.h"
 #include "baker/import/notes.h"
 #include "baker/import/obj_file.h"
 #include "baker/import/read_bvh.h"
 #include "baker/import/read_in_child.h"
+#include "baker/import/robot_motion.h"
+#include "baker/import/smpl_motion.h"
 #include "baker/mesh/error.h"
 #include "baker/os/access.h"
 #include "baker/os/sha256.h"
@@ -39,6 +44,8 @@ bool is_gltf(const std::filesystem::path& path) {
   return start.starts_with("glTF") || (first != start.npos && start[first] == '{');
 }
 
+constexpr const char* kNoMesh = ": is a recording without a mesh (name it by --motion)";
+
 // One bone moves all vertices. Morph targets stay at their weights at rest.
 void make_rigid(SourceMesh& mesh) {
   for (const Morph& morph : mesh.rig.morphs) {
@@ -55,6 +62,28 @@ void make_rigid(SourceMesh& mesh) {
   mesh.rig.nodes = {node};
   mesh.rig.bones = {{0, Affine::Identity()}};
   mesh.rig.weights.assign(mesh.positions.size(), whole);
+}
+
+SourceMesh read_with_numpy(const std::filesystem::path& path) {
+  const Arrays arrays = read_arrays(path);
+  if (auto character = array_character(arrays, path.string())) return std::move(*character);
+  SourceMesh mesh;
+  mesh.importer = "numpy";
+  if (auto motion = smpl_motion(arrays, path.string())) {
+    mesh.rig = std::move(*motion);
+    return mesh;
+  }
+  if (robot_motion(arrays, path.string())) {
+    throw Error(ExitCode::kFile,
+                path.string() + ": is the motion of a robot (play it on that robot: a URDF or MJCF file)");
+  }
+  std::string names;
+  for (const auto& [name, array] : arrays) {
+    constexpr std::size_t kShown = 200;
+    if (names.size() < kShown) names += (names.empty() ? "'" : ", '") + name + "'";
+  }
+  throw Error(ExitCode::kFile, path.string() + ": holds neither a motion nor a character, only " + names +
+                                   " (docs/formats.md has the names that are read)");
 }
 
 // A mesh that the child process sends, with its notes.
@@ -108,7 +137,7 @@ std::vector<std::filesystem::path> files_beside(const std::filesystem::path& sou
 std::vector<std::filesystem::path> files_read_with(const std::filesystem::path& source) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(source, ignored)) return {};
-  if (is_gltf(source) || is_recording(source)) return {};  // files_beside has a glTF's
+  if (is_gltf(source) || is_recording(source) || is_arrays(source)) return {};  // files_beside has a glTF's
   try {
     const auto files = from_bytes<std::vector<std::string>>(
         read_in_child(source.string(), [&] { return to_bytes(files_read_with_assimp(source)); }));
@@ -131,7 +160,10 @@ SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& o
   } else {
     auto received = from_bytes<NotedMesh>(read_in_child(path.string(), [&] {
       take_notes();  // the parent's
-      NotedMesh read{is_gltf(path) ? read_with_tinygltf(path, options) : read_with_assimp(path, options), {}};
+      NotedMesh read{is_gltf(path)     ? read_with_tinygltf(path, options)
+                     : is_arrays(path) ? read_with_numpy(path)
+                                       : read_with_assimp(path, options),
+                     {}};
       read.notes = take_notes();
       return to_bytes(read);
     }));
@@ -146,9 +178,15 @@ SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& o
 std::string read_as_glb(const std::filesystem::path& path) {
   check_regular_file(path);
   if (is_recording(path) && !is_gltf(path)) {
-    throw Error(ExitCode::kFile, path.string() + ": is a recording without a mesh (name it by --motion)");
+    throw Error(ExitCode::kFile, path.string() + kNoMesh);
   }
-  return read_in_child(path.string(), [&] { return is_gltf(path) ? pack_gltf(path) : glb_with_assimp(path); });
+  return read_in_child(path.string(), [&] {
+    if (is_gltf(path)) return pack_gltf(path);
+    if (!is_arrays(path)) return glb_with_assimp(path);
+    const SourceMesh mesh = read_with_numpy(path);
+    if (mesh.triangles.empty()) throw Error(ExitCode::kFile, path.string() + kNoMesh);
+    return glb_of(mesh);
+  });
 }
 
 Character import_character(const std::filesystem::path& path, const ImportOptions& options) {

@@ -14,7 +14,7 @@ namespace spherechain::baker {
 
 // Findings and repairs of the import, for the bake report.
 struct ImportReport {
-  std::string importer;                // "assimp" or "tinygltf"
+  std::string importer;                // "assimp", "tinygltf", "bvh" or "numpy"
   std::size_t meshes = 0;              // mesh instances in the source's scene
   std::size_t components = 0;          // connected pieces after welding
   std::size_t welded_vertices = 0;     // distinct positions over all pieces

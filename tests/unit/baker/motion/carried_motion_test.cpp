@@ -29,7 +29,7 @@ constexpr double kSame = 1e-4;  // of the height
 const fs::path kWalk = kModels / "BVH/01_03.bvh";
 
 // The farthest that a vertex is in one pose from where it is in the other.
-double apart(const Character& character, const Deformation& a, const Deformation& b) {
+double farthest_vertices(const Character& character, const Deformation& a, const Deformation& b) {
   const std::vector<Vec3> p = deform(character.source_positions, character.rig.weights, a.bones),
                           q = deform(character.source_positions, character.rig.weights, b.bones);
   double out = 0;
@@ -64,7 +64,8 @@ void check_carried(const Character& character, const BodyFrame& frame) {
   CHECK(fps == 120);
   CHECK(clip.duration == doctest::Approx(carried->duration()).epsilon(1e-3));
   for (double second = 0; second < carried->duration(); second += 307 / fps) {
-    const double off = apart(character, carried->at(second / carried->duration()), sample(rig, clip, second));
+    const double off =
+        farthest_vertices(character, carried->at(second / carried->duration()), sample(rig, clip, second));
     CHECK(off < kSame * frame.height);
   }
 
@@ -86,8 +87,8 @@ void check_carried(const Character& character, const BodyFrame& frame) {
   double turned = 0;
   for (double second = 1.5; second < 3.5; second += 17 / fps) {
     const Deformation wanted = sample(rig, after, second);
-    CHECK(apart(character, again->at(second / again->duration()), wanted) < kSame * frame.height);
-    turned = std::max(turned, apart(character, sample(rig, clip, second), wanted));
+    CHECK(farthest_vertices(character, again->at(second / again->duration()), wanted) < kSame * frame.height);
+    turned = std::max(turned, farthest_vertices(character, sample(rig, clip, second), wanted));
   }
   CHECK(turned > 0.05 * frame.height);
   // Frames before and after the second are the file's, letter by letter.
