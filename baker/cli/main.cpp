@@ -377,7 +377,9 @@ int main(int argc, char** argv) {
       ->required();
   CLI::Option* score_motion = add_name(*score_command, "--motion", score.motion,
                                        "Recording, or a folder of them, in place of the characters' own clips");
-  score_command->add_option("--bodies", score.bodies, "More characters that the same recordings are carried over to")
+  score_command
+      ->add_option("--bodies", score.bodies,
+                   "More characters for the same recordings, or MakeHuman's folder of data: people from baby to old")
       ->check(refuse_empty)
       ->needs(score_motion);
   add_name(*score_command, "--clip", score.clip, "One of the characters' own clips: its name or number (default: all)")

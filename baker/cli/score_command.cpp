@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "baker/cli/commands.h"
 #include "baker/cli/console.h"
@@ -13,7 +14,9 @@
 #include "baker/cli/progress.h"
 #include "baker/mesh/error.h"
 #include "baker/os/own_folder.h"
+#include "baker/os/work_folder.h"
 #include "baker/page/fill_page.h"
+#include "baker/score/bodies.h"
 #include "baker/score/score_library.h"
 
 namespace spherechain::baker {
@@ -56,13 +59,11 @@ void add_limits(const char* option, const std::vector<std::string>& texts, bool 
   }
 }
 
-ScoreJob job_of(const ScoreOptions& options, const std::vector<Limit>& limits) {
+ScoreJob job_of(const ScoreOptions& options, const std::vector<std::string>& paths, const std::vector<Limit>& limits) {
   ScoreJob job;
   CheckConfig config = default_config();
   if (!options.character.empty()) config.bake.import.character = options.character;
   if (options.size.is_given()) config.bake.size = options.size;
-  std::vector<std::string> paths = options.library;
-  paths.insert(paths.end(), options.bodies.begin(), options.bodies.end());
   job.characters = read_library(paths, options.motion, config).characters;
   job.clip = options.clip;
   job.reference = options.reference;
@@ -85,7 +86,18 @@ ExitCode run_score(const ScoreOptions& options) {
   add_limits("--keep-below", options.keep_below, false, limits);
   add_limits("--keep-above", options.keep_above, true, limits);
   OwnFolder::check(options.output, kScoreKind, is_score_file);
-  const ScoreJob job = job_of(options, limits);
+  std::vector<std::string> paths = options.library;
+  std::optional<WorkFolder> made;
+  for (const std::string& body : options.bodies) {
+    if (!is_makehuman(body)) {
+      paths.push_back(body);
+      continue;
+    }
+    if (!made) made.emplace(fs::temp_directory_path());
+    const std::vector<std::string> people = write_bodies(body, made->path());
+    paths.insert(paths.end(), people.begin(), people.end());
+  }
+  const ScoreJob job = job_of(options, paths, limits);
   std::vector<ScoreRow> rows;
   {
     Progress progress("score");
