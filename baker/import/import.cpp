@@ -13,6 +13,7 @@
 #include "baker/import/obj_file.h"
 #include "baker/import/read_bvh.h"
 #include "baker/import/read_in_child.h"
+#include "baker/import/robot_model.h"
 #include "baker/mesh/error.h"
 #include "baker/os/access.h"
 #include "baker/os/sha256.h"
@@ -111,7 +112,8 @@ std::vector<std::filesystem::path> files_read_with(const std::filesystem::path& 
   if (is_gltf(source) || is_recording(source)) return {};  // files_beside has a glTF's
   try {
     const auto files = from_bytes<std::vector<std::string>>(
-        read_in_child(source.string(), [&] { return to_bytes(files_read_with_assimp(source)); }));
+        read_in_child(
+        source.string(), [&] { return to_bytes(is_robot(source) ? files_of_robot(source) : files_read_with_assimp(source)); }));
     return {files.begin(), files.end()};
   } catch (const Error&) {  // which read_source says
     return {};
@@ -131,7 +133,10 @@ SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& o
   } else {
     auto received = from_bytes<NotedMesh>(read_in_child(path.string(), [&] {
       take_notes();  // the parent's
-      NotedMesh read{is_gltf(path) ? read_with_tinygltf(path, options) : read_with_assimp(path, options), {}};
+      NotedMesh read{is_gltf(path)    ? read_with_tinygltf(path, options)
+                     : is_robot(path) ? read_robot(path, options)
+                                      : read_with_assimp(path, options),
+                     {}};
       read.notes = take_notes();
       return to_bytes(read);
     }));
@@ -147,6 +152,10 @@ std::string read_as_glb(const std::filesystem::path& path) {
   check_regular_file(path);
   if (is_recording(path) && !is_gltf(path)) {
     throw Error(ExitCode::kFile, path.string() + ": is a recording without a mesh (name it by --motion)");
+  }
+  if (is_robot(path)) {
+    throw Error(ExitCode::kFile, path.string() + ": is a robot, which no glTF is written of (bake, play and check take "
+                                                 "it, and its motion as CSV)");
   }
   return read_in_child(path.string(), [&] { return is_gltf(path) ? pack_gltf(path) : glb_with_assimp(path); });
 }
