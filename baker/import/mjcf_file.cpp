@@ -50,6 +50,7 @@ class MjcfReader {
     }
     for (const auto& [kind, count] : skipped_)
       add_note(path_.string() + ": not read: " + std::to_string(count) + " " + kind);
+    model_.included.assign(included_.begin(), included_.end());
     return std::move(model_);
   }
 

@@ -177,7 +177,9 @@ SourceMesh read_robot(const std::filesystem::path& path, const ImportOptions& op
 
 std::vector<std::string> files_of_robot(const std::filesystem::path& path) {
   std::set<std::string> out;
-  for (const RobotLink& link : read_model(path).links) {
+  const RobotModel model = read_model(path);
+  for (const std::filesystem::path& file : model.included) out.insert(file.string());
+  for (const RobotLink& link : model.links) {
     for (const RobotShape& shape : link.shapes) {
       if (!shape.file.empty()) out.insert(shape.file.string());
     }

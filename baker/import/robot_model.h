@@ -40,6 +40,7 @@ struct RobotModel {
   std::vector<RobotLink> links;
   std::vector<RigJoint> joints;
   std::vector<std::array<Index, 2>> excluded;  // links that the file says are not tested against each other
+  std::vector<std::filesystem::path> included;  // further files of the description
 };
 
 // Both throw Error(kFile).
