@@ -32,10 +32,9 @@ std::string extension_of(const fs::path& file) {
 }
 
 bool may_be_character(const fs::path& file) {
-  static const std::set<std::string> kExtensions{".glb", ".gltf", ".vrm", ".fbx", ".dae",     ".zae",  ".obj",
-                                                 ".x",   ".ms3d", ".b3d", ".3ds", ".md5mesh", ".smd",  ".iqm",
-                                                 ".mdl", ".md2",  ".md3", ".ply", ".stl",     ".mesh", ".mesh.xml",
-                                                 ".urdf"};
+  static const std::set<std::string> kExtensions{
+      ".glb",     ".gltf", ".vrm", ".fbx", ".dae", ".zae", ".obj", ".x",   ".ms3d", ".b3d",      ".3ds",
+      ".md5mesh", ".smd",  ".iqm", ".mdl", ".md2", ".md3", ".ply", ".stl", ".mesh", ".mesh.xml", ".urdf"};
   const std::string extension = extension_of(file);
   return kExtensions.count(extension) > 0 || (extension == ".xml" && is_robot(file));
 }
@@ -168,7 +167,8 @@ void remove_links(std::vector<LibraryCharacter>& characters) {
     if (!is_robot(one.file)) continue;
     for (const fs::path& file : files_read_with(one.file)) links.insert(fs::weakly_canonical(file));
   }
-  std::erase_if(characters, [&](const LibraryCharacter& one) { return links.contains(fs::weakly_canonical(one.file)); });
+  std::erase_if(characters,
+                [&](const LibraryCharacter& one) { return links.contains(fs::weakly_canonical(one.file)); });
 }
 
 // The shortest ends of the paths that are all different.

@@ -102,6 +102,7 @@ std::vector<std::filesystem::path> files_beside(const std::filesystem::path& sou
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(source, ignored)) return {};
   if (is_gltf(source)) return files_of_gltf(source);
+  if (is_robot(source)) return files_read_with(source);
   if (extension_of(source) == ".obj") return files_of_obj(source);
   return {};
 }
@@ -111,9 +112,9 @@ std::vector<std::filesystem::path> files_read_with(const std::filesystem::path& 
   if (!std::filesystem::is_regular_file(source, ignored)) return {};
   if (is_gltf(source) || is_recording(source)) return {};  // files_beside has a glTF's
   try {
-    const auto files = from_bytes<std::vector<std::string>>(
-        read_in_child(
-        source.string(), [&] { return to_bytes(is_robot(source) ? files_of_robot(source) : files_read_with_assimp(source)); }));
+    const auto files = from_bytes<std::vector<std::string>>(read_in_child(source.string(), [&] {
+      return to_bytes(is_robot(source) ? files_of_robot(source) : files_read_with_assimp(source));
+    }));
     return {files.begin(), files.end()};
   } catch (const Error&) {  // which read_source says
     return {};
@@ -154,8 +155,9 @@ std::string read_as_glb(const std::filesystem::path& path) {
     throw Error(ExitCode::kFile, path.string() + ": is a recording without a mesh (name it by --motion)");
   }
   if (is_robot(path)) {
-    throw Error(ExitCode::kFile, path.string() + ": is a robot, which no glTF is written of (bake, play and check take "
-                                                 "it, and its motion as CSV)");
+    throw Error(ExitCode::kFile, path.string() +
+                                     ": is a robot, which no glTF is written of (bake, play and check take "
+                                     "it, and its motion as CSV)");
   }
   return read_in_child(path.string(), [&] { return is_gltf(path) ? pack_gltf(path) : glb_with_assimp(path); });
 }

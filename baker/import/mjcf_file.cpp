@@ -32,6 +32,7 @@ class MjcfReader {
 
   RobotModel run() {
     include(file_.root(), 0);
+    model_.name = file_.root().attribute("model").value();
     for (const xml_node compiler : of_kind("compiler")) read_compiler(compiler);
     for (const xml_node defaults : of_kind("default")) read_class(defaults, kMainClass, {});
     for (const xml_node asset : of_kind("asset")) {
@@ -118,7 +119,8 @@ class MjcfReader {
     if (found == classes_.end() && name != kMainClass)
       file_.fail(in_words(element) + ": there is no default class " + in_quotes(name));
     if (found != classes_.end()) {
-      if (const auto of_kind = found->second.find(element.name()); of_kind != found->second.end()) out = of_kind->second;
+      if (const auto of_kind = found->second.find(element.name()); of_kind != found->second.end())
+        out = of_kind->second;
     }
     put(out, element);
     return out;
@@ -244,7 +246,8 @@ class MjcfReader {
 
   void read_geom(xml_node element, Index link, const std::string& around, const Affine& frame) {
     const Attributes a = attributes_of(element, around);
-    const std::string mesh = at(a, "mesh").as_string(), type = at(a, "type").as_string(mesh.empty() ? "sphere" : "mesh");
+    const std::string mesh = at(a, "mesh").as_string(),
+                      type = at(a, "type").as_string(mesh.empty() ? "sphere" : "mesh");
     const auto where = [&] { return "body " + in_quotes(model_.links[link].name) + ", " + in_words(element); };
     if (type == "plane" || type == "hfield" || type == "sdf") {
       ++skipped_["geom of type " + type];
@@ -253,8 +256,8 @@ class MjcfReader {
     RobotShape shape;
     const int group = static_cast<int>(file_.number(at(a, "group")).value_or(0));
     shape.is_visual = group >= 0 && group <= 2;  // those that MuJoCo's viewer shows
-    shape.is_collider = file_.number(at(a, "contype")).value_or(1) != 0 ||
-                        file_.number(at(a, "conaffinity")).value_or(1) != 0;
+    shape.is_collider =
+        file_.number(at(a, "contype")).value_or(1) != 0 || file_.number(at(a, "conaffinity")).value_or(1) != 0;
     shape.place = frame * place_of(a);
     shape.colour = colour_of(a);
     if (type == "mesh" || !mesh.empty()) {
@@ -264,7 +267,8 @@ class MjcfReader {
       const std::vector<double> ends = file_.numbers(at(a, "fromto"), 6, 6);
       const std::size_t needed = (type == "sphere" ? 1U : type == "capsule" || type == "cylinder" ? 2U : 3U);
       const std::size_t given = ends.empty() || type == "sphere" ? needed : 1;
-      if (size.size() < given || *std::min_element(size.begin(), size.begin() + static_cast<std::ptrdiff_t>(given)) <= 0)
+      if (size.size() < given ||
+          *std::min_element(size.begin(), size.begin() + static_cast<std::ptrdiff_t>(given)) <= 0)
         file_.fail(where() + ": a " + type + " needs " + std::to_string(given) + " sizes above 0");
       Vec3 half(size[0], size.size() > 1 ? size[1] : 0, size.size() > 2 ? size[2] : 0);
       if (!ends.empty() && type != "sphere") {
@@ -309,7 +313,8 @@ class MjcfReader {
   }
 
   // MuJoCo moves a mesh to the centre of its mass and its geom back: on the whole it stays where its file has it.
-  void read_mesh(const std::string& name, const std::string& around, RobotShape& shape, const std::string& where) const {
+  void read_mesh(const std::string& name, const std::string& around, RobotShape& shape,
+                 const std::string& where) const {
     const auto found = meshes_.find(name);
     if (found == meshes_.end()) file_.fail(where + ": there is no mesh " + in_quotes(name));
     const xml_node mesh = found->second;
@@ -329,11 +334,13 @@ class MjcfReader {
     std::string file = at(a, "file").value();
     if (!mesh_folder_.empty()) file = mesh_folder_ + "/" + file;
     const NamedFile on_disk = named_file(folder_, file);
-    if (!on_disk.is_there) file_.fail(where + ": needs the file " + in_quotes(file) + ", which " + on_disk.what_is_wrong());
+    if (!on_disk.is_there)
+      file_.fail(where + ": needs the file " + in_quotes(file) + ", which " + on_disk.what_is_wrong());
     shape.file = on_disk.path;
   }
 
-  void read_inline(pugi::xml_attribute vertices, pugi::xml_attribute faces, Mesh& mesh, const std::string& where) const {
+  void read_inline(pugi::xml_attribute vertices, pugi::xml_attribute faces, Mesh& mesh,
+                   const std::string& where) const {
     constexpr std::size_t kNumbersMax = 100'000'000;
     const std::vector<double> numbers = file_.numbers(vertices, 0, kNumbersMax),
                               corners = file_.numbers(faces, 0, kNumbersMax);
@@ -354,8 +361,8 @@ class MjcfReader {
   Index link_named(xml_node exclude, const char* which) const {
     const std::string name = exclude.attribute(which).value();
     const auto found = number_.find(name);
-    if (found == number_.end() && name != "world") file_.fail("excludes the body " + in_quotes(name) + ", which is not there");
-    return found == number_.end() ? 0 : found->second;
+    if (found == number_.end()) file_.fail("excludes the body " + in_quotes(name) + ", which is not there");
+    return found->second;
   }
 
   // An equality of two joints is a mimic where it is linear.
@@ -389,7 +396,7 @@ class MjcfReader {
   std::set<std::filesystem::path> included_;
   std::map<std::string, std::map<std::string, Attributes>> classes_;
   std::map<std::string, xml_node> meshes_, materials_;
-  std::map<std::string, Index> number_;  // of bodies by name
+  std::map<std::string, Index> number_{{"world", 0}};  // of bodies by name
   std::map<std::string, int> skipped_;
   std::string euler_ = "xyz", mesh_folder_;
   bool is_degrees_ = true, auto_limits_ = true;

@@ -66,6 +66,7 @@ class RobotBuilder {
   void add_nodes() {
     SourceRig& rig = out_.rig;
     rig.robot.is_robot = true;
+    rig.robot.name = model_.name;
     rig.robot.joints = model_.joints;
     for (const RobotLink& link : model_.links) {
       Node node;
@@ -90,9 +91,10 @@ class RobotBuilder {
       const auto [bone, is_new] = bone_of_group.try_emplace(group[link], static_cast<Index>(out_.rig.bones.size()));
       if (is_new) out_.rig.bones.push_back({link, world_[link].inverse()});
     }
-    for (const Index of_link : group) {
-      const auto found = bone_of_group.find(of_link);
+    for (Index link = 0; link < group.size(); ++link) {
+      const auto found = bone_of_group.find(group[link]);
       bone_of_.push_back(found == bone_of_group.end() ? kNoIndex : found->second);
+      out_.rig.robot.bone_of.push_back(model_.links[link].shapes.empty() ? kNoIndex : bone_of_.back());
     }
     group_ = group;
   }

@@ -37,9 +37,10 @@ struct RobotLink {
 
 // A robot as its file describes it. A joint's node is the number of its link.
 struct RobotModel {
+  std::string name;
   std::vector<RobotLink> links;
   std::vector<RigJoint> joints;
-  std::vector<std::array<Index, 2>> excluded;  // links that the file says are not tested against each other
+  std::vector<std::array<Index, 2>> excluded;   // links that the file says are not tested against each other
   std::vector<std::filesystem::path> included;  // further files of the description
 };
 

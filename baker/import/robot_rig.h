@@ -36,9 +36,11 @@ struct RigCollider {
 // The part of a robot's description that a skeleton of nodes does not hold; without joints for other characters.
 struct RobotRig {
   bool is_robot = false;
-  Index root = 0;  // the node that a motion moves through the world
-  std::vector<Eigen::AffineCompact3d> base;  // of each node: its place in its parent where all its joints are at rest
-  std::vector<RigJoint> joints;            // parents first, as the file lists them
+  std::string name;            // of the robot
+  std::vector<Index> bone_of;  // of each node: the bone that moves its geometry; kNoIndex where it has none
+  Index root = 0;              // the node that a motion moves through the world
+  std::vector<Eigen::AffineCompact3d> base;    // of each node: its place in its parent where all its joints are at rest
+  std::vector<RigJoint> joints;                // parents first, as the file lists them
   std::vector<std::array<Index, 2>> excluded;  // bones, first < second: neighbours, or the file excludes the pair
   std::vector<RigCollider> colliders;
 };

@@ -14,8 +14,8 @@ constexpr std::size_t kSides = 48, kRings = 12;  // around, and from the equator
 Mesh box(const Vec3& half) {
   Mesh out;
   for (int corner = 0; corner < 8; ++corner) {
-    out.positions.push_back(half.cwiseProduct(
-        Vec3((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1, (corner & 4) != 0 ? 1 : -1)));
+    out.positions.push_back(
+        half.cwiseProduct(Vec3((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1, (corner & 4) != 0 ? 1 : -1)));
   }
   const std::array<std::array<Index, 4>, 6> sides{
       {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};

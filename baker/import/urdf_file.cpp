@@ -51,7 +51,9 @@ class MeshFinder {
   }
 
  private:
-  static NamedFile in(const fs::path& folder, const fs::path& name) { return named_file(folder, name.generic_string()); }
+  static NamedFile in(const fs::path& folder, const fs::path& name) {
+    return named_file(folder, name.generic_string());
+  }
 
   fs::path folder_, home_;
 };
@@ -62,6 +64,7 @@ class UrdfReader {
 
   RobotModel run() {
     const pugi::xml_node robot = file_.root();
+    model_.name = robot.attribute("name").value();
     for (const pugi::xml_node child : robot.children()) {
       if (std::string_view(child.name()).starts_with("xacro:"))
         file_.fail("is a xacro file (write the URDF with `xacro FILE > FILE.urdf`)");
@@ -201,9 +204,9 @@ class UrdfReader {
       const std::string name = geometry.attribute("filename").value();
       const NamedFile found = finder_.find(name);
       if (!found.is_there) {
-        file_.fail(in_words(link) + ": needs the file " + in_quotes(name) + ", which " + found.what_is_wrong() +
-                   (found.refusal != nullptr ? " (an empty package.xml in a folder around both makes it the package)"
-                                             : ""));
+        file_.fail(
+            in_words(link) + ": needs the file " + in_quotes(name) + ", which " + found.what_is_wrong() +
+            (found.refusal != nullptr ? " (an empty package.xml in a folder around both makes it the package)" : ""));
       }
       shape.file = found.path;
       shape.size = file_.vector(geometry.attribute("scale")).value_or(Vec3::Ones());

@@ -14,6 +14,7 @@
 #include "baker/import/notes.h"
 #include "baker/import/robot_joints.h"
 #include "baker/mesh/error.h"
+#include "baker/motion/frame_times.h"
 
 namespace spherechain::baker {
 namespace {
@@ -67,6 +68,7 @@ Table read_table(const std::filesystem::path& file) {
       out.header = cells;
       continue;
     }
+    if (static_cast<double>(out.rows.size()) >= kFramesMax) fail(fmt::format("more than {:.0f} rows", kFramesMax));
     std::vector<double>& row = out.rows.emplace_back();
     for (const std::string& cell : cells) {
       const std::optional<double> value = number_in(cell);
@@ -100,8 +102,8 @@ RobotFrames frames_by_name(const SourceRig& rig, const Table& table, const std::
   for (std::size_t c = 0; c < table.header.size(); ++c) {
     const std::string& name = table.header[c];
     const auto of_root = std::find(kRootNames.begin(), kRootNames.end(), name);
-    const auto joint = std::find_if(robot.joints.begin(), robot.joints.end(),
-                                    [&](const RigJoint& one) { return one.name == name; });
+    const auto joint =
+        std::find_if(robot.joints.begin(), robot.joints.end(), [&](const RigJoint& one) { return one.name == name; });
     if (name == "time") {
       time = c;
     } else if (of_root != kRootNames.end()) {
@@ -116,8 +118,8 @@ RobotFrames frames_by_name(const SourceRig& rig, const Table& table, const std::
     }
   }
   if (out.joints.empty() && roots == 0)
-    throw Error(ExitCode::kFile, file + ": names no joint of the robot (its first line has " +
-                                     in_quotes(table.header[0]) + ")");
+    throw Error(ExitCode::kFile,
+                file + ": names no joint of the robot (its first line has " + in_quotes(table.header[0]) + ")");
   if (roots != 0 && roots != kRootWidth)
     throw Error(ExitCode::kFile, file + ": has some of the columns root_x ... root_qw, and needs all seven or none");
   if (!unknown.empty())
@@ -172,10 +174,11 @@ RobotFrames frames_of_rows(const SourceRig& rig, const std::vector<std::vector<d
     const std::vector<double>& row = rows[r];
     const bool has_root = row.size() == kRootWidth + joints;
     if (!has_root && row.size() != joints) {
-      throw Error(ExitCode::kFile,
-                  fmt::format("{}: has {} numbers in a row, and the robot needs {} (7 of its root and {} of its joints), "
-                              "or {} without the root",
-                              file, row.size(), kRootWidth + joints, joints, joints));
+      throw Error(
+          ExitCode::kFile,
+          fmt::format("{}: has {} numbers in a row, and the robot needs {} (7 of its root and {} of its joints), "
+                      "or {} without the root",
+                      file, row.size(), kRootWidth + joints, joints, joints));
     }
     out.seconds.push_back(static_cast<double>(r) / fps);
     if (has_root) out.roots.push_back(root_of(row.data(), file, r));

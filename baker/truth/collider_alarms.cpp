@@ -14,6 +14,7 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/convex_hull_3.h>
 
+#include <deque>
 #include <map>
 #include <set>
 
@@ -44,9 +45,9 @@ Solid solid_of(const Mesh& mesh, bool is_convex) {
 // Rigid bodies on bones.
 class Bodies {
  public:
-  void add(Index bone, const Solid& solid) {
+  void add(Index bone, Solid solid) {
     if (solid.number_of_faces() == 0) return;
-    detection_.add_mesh(solid);
+    detection_.add_mesh(solids_.emplace_back(std::move(solid)));
     bone_of_.push_back(bone);
   }
 
@@ -69,6 +70,7 @@ class Bodies {
   }
 
  private:
+  std::deque<Solid> solids_;  // which stay in place: the search refers to them
   CGAL::Rigid_triangle_mesh_collision_detection<Solid> detection_;
   std::vector<Index> bone_of_;
 };

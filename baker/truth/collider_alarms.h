@@ -22,7 +22,7 @@ struct ColliderAlarms {
     Counts counts;
   };
   int poses = 0;
-  Counts any;  // poses with such a pair. An alarm is wrong where no pair's meshes intersect.
+  Counts any;                   // poses with such a pair. An alarm is wrong where no pair's meshes intersect.
   std::vector<BonePair> pairs;  // those with an alarm or a miss, in the order of the bones
 };
 
