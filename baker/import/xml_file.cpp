@@ -25,7 +25,10 @@ std::string xml_root_name(const std::filesystem::path& path) {
     const bool is_comment = text.starts_with("<!--");
     if (!is_comment && !text.starts_with("<?") && !text.starts_with("<!")) break;
     const std::string_view end = is_comment ? "-->" : ">";
-    const std::size_t at = text.find(end);
+    // A document type may have declarations in brackets.
+    const std::size_t bracket = text.starts_with("<!DOCTYPE") ? text.find_first_of("[>") : text.npos;
+    const bool has_declarations = bracket != text.npos && text[bracket] == '[';
+    const std::size_t at = text.find(end, has_declarations ? text.find(']', bracket) : 0);
     if (at == text.npos) return {};
     text.remove_prefix(at + end.size());
   }

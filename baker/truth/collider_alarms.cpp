@@ -49,6 +49,8 @@ class Bodies {
     if (solid.number_of_faces() == 0) return;
     detection_.add_mesh(solids_.emplace_back(std::move(solid)));
     bone_of_.push_back(bone);
+    Eigen::AlignedBox3d& box = boxes_.emplace_back();
+    for (const Kernel::Point_3& p : solids_.back().points()) box.extend(Vec3(p.x(), p.y(), p.z()));
   }
 
   // Pairs of bones whose bodies intersect in a pose, but for `excluded`.
@@ -59,20 +61,46 @@ class Bodies {
           i, CGAL::Aff_transformation_3<Kernel>(m(0, 0), m(0, 1), m(0, 2), m(0, 3), m(1, 0), m(1, 1), m(1, 2), m(1, 3),
                                                 m(2, 0), m(2, 1), m(2, 2), m(2, 3)));
     }
+    const std::vector<Eigen::AlignedBox3d> placed = boxes_in(bones);
     BonePairs out;
     for (std::size_t i = 0; i < bone_of_.size(); ++i) {
-      for (const auto& [j, is_inside] : detection_.get_all_intersections_and_inclusions(i)) {
-        const std::array<Index, 2> pair{std::min(bone_of_[i], bone_of_[j]), std::max(bone_of_[i], bone_of_[j])};
-        if (pair[0] != pair[1] && !excluded.contains(pair)) out.insert(pair);
+      std::vector<std::size_t> near;
+      for (std::size_t j = i + 1; j < bone_of_.size(); ++j) {
+        const std::array<Index, 2> pair = pair_of(i, j);
+        if (pair[0] != pair[1] && !excluded.contains(pair) && !out.contains(pair) && placed[i].intersects(placed[j]))
+          near.push_back(j);
       }
+      if (near.empty()) continue;
+      for (const auto& [j, is_inside] : detection_.get_all_intersections_and_inclusions(i, near))
+        out.insert(pair_of(i, j));
     }
     return out;
   }
 
  private:
+  std::array<Index, 2> pair_of(std::size_t i, std::size_t j) const {
+    return {std::min(bone_of_[i], bone_of_[j]), std::max(bone_of_[i], bone_of_[j])};
+  }
+
+  // A box around each body in a pose.
+  std::vector<Eigen::AlignedBox3d> boxes_in(const std::vector<Affine>& bones) const {
+    constexpr double kRounding = 1e-9;
+    std::vector<Eigen::AlignedBox3d> out;
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      Eigen::AlignedBox3d& box = out.emplace_back();
+      for (int c = 0; c < 8; ++c)
+        box.extend(bones[bone_of_[i]] * boxes_[i].corner(static_cast<Eigen::AlignedBox3d::CornerType>(c)));
+      const Vec3 margin = Vec3::Constant(kRounding * box.diagonal().norm());
+      box.extend(box.min() - margin);
+      box.extend(box.max() + margin);
+    }
+    return out;
+  }
+
   std::deque<Solid> solids_;  // which stay in place: the search refers to them
   CGAL::Rigid_triangle_mesh_collision_detection<Solid> detection_;
   std::vector<Index> bone_of_;
+  std::vector<Eigen::AlignedBox3d> boxes_;  // at rest
 };
 
 // The skin of each bone that has a collider.
