@@ -229,7 +229,7 @@ Library read_library(const std::vector<std::string>& paths, const std::string& m
   if (!motion.empty()) {
     const Motions shared = motions_at(motion, library.folders);
     for (LibraryCharacter& character : out) {
-      // Of a folder, CSV files are for robots and all others for other characters.
+      // In a folder, CSV files are for robots and all others for other characters.
       const bool takes_csv = is_robot(character.file);
       for (const LibraryCharacter::Motion& one : shared) {
         if (!fs::is_directory(motion) || (extension_of(one.file) == ".csv") == takes_csv)

@@ -154,11 +154,7 @@ std::string read_as_glb(const std::filesystem::path& path) {
   if (is_recording(path) && !is_gltf(path)) {
     throw Error(ExitCode::kFile, path.string() + ": is a recording without a mesh (name it by --motion)");
   }
-  if (is_robot(path)) {
-    throw Error(ExitCode::kFile, path.string() +
-                                     ": is a robot, which no glTF is written of (bake, play and check take "
-                                     "it, and its motion as CSV)");
-  }
+  refuse_robot(path);
   return read_in_child(path.string(), [&] { return is_gltf(path) ? pack_gltf(path) : glb_with_assimp(path); });
 }
 

@@ -172,6 +172,12 @@ bool is_robot(const std::filesystem::path& path) {
   return root == "robot" || root == "mujoco";
 }
 
+void refuse_robot(const std::filesystem::path& path) {
+  if (!is_robot(path)) return;
+  throw Error(ExitCode::kFile,
+              path.string() + ": is a robot, which no glTF is written of (bake, play and check take robots)");
+}
+
 SourceMesh read_robot(const std::filesystem::path& path, const ImportOptions& options) {
   const RobotModel model = read_model(path);
   return RobotBuilder(model, path.string()).run(options.look);

@@ -53,6 +53,8 @@ Mesh triangles_of(const RobotShape& shape);
 
 // True for URDF and MJCF files, by their outermost element.
 bool is_robot(const std::filesystem::path& path);
+// For commands that write a glTF of the character that they read. Throws Error(kFile) where it is a robot.
+void refuse_robot(const std::filesystem::path& path);
 // For a child process (read_in_child.h). Links that fixed joints connect become one bone, which has the name of the
 // first of them with a mesh.
 SourceMesh read_robot(const std::filesystem::path& path, const ImportOptions& options);

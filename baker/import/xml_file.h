@@ -32,7 +32,7 @@ class XmlFile {
   pugi::xml_document document_;
 };
 
-// What messages call an element: its tag, and its name where it has one.
+// An element as messages call it: its tag, and its name where it has one.
 std::string in_words(pugi::xml_node element);
 
 }  // namespace spherechain::baker

@@ -70,3 +70,9 @@ TEST_CASE("check takes a folder with a robot and its meshes for one character") 
   CHECK(check.out.find("arm.urdf") != std::string::npos);
   CHECK((check.out + check.error).find("link.stl") == std::string::npos);
 }
+
+TEST_CASE("fix says that it takes no robots") {
+  const small_robot::Files files;
+  tool::check_error(tool::run("fix " + files.urdf().string() + " -o " + (files.folder / "a.glb").string()), 3,
+                    {"arm.urdf", "is a robot"});
+}

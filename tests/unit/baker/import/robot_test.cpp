@@ -151,3 +151,25 @@ TEST_CASE("a broken MJCF is refused by name and cause") {
   CHECK(contains(refused("<include file=\"../a.xml\"/>"), "outside the folder"));
   CHECK(contains(refused("<include file=\"a.xml\"/>"), "a.xml' twice"));
 }
+TEST_CASE("an MJCF's geometry lies where MuJoCo puts it") {
+  const small_robot::Files files;
+  files.write("meshes/tetrahedron.obj",
+              "v 0 0 0\nv 0.3 0 0\nv 0 0.2 0\nv 0.05 0.05 0.5\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  const SourceMesh robot = read_source(files.write("a.xml", R"(<mujoco><compiler eulerseq="zyx" meshdir="meshes"/>
+  <asset><mesh name="a" file="tetrahedron.obj" scale="2 1 -1"/>
+    <mesh name="b" file="tetrahedron.obj" refpos=".1 .2 .3" refquat="0.9 0.1 0.3 -0.2"/></asset>
+  <worldbody><body name="one" pos=".1 .2 .3" euler="10 20 30"><joint axis="0 0 1"/>
+      <geom type="mesh" mesh="a" pos="0 0 .1" axisangle="1 1 0 40"/>
+    <body name="two" pos="1 0 0" xyaxes="0 1 0 -1 .2 0"><joint/><geom type="mesh" mesh="b" zaxis="1 1 1"/>
+      <body name="four" pos="0 1 1"><joint type="slide"/><geom type="box" fromto="0 0 0 .3 .4 0.2" size=".05"/></body>
+    </body></body></worldbody></mujoco>)"));
+  // By MuJoCo 2.2.2: the corners of each geom, by mj_kinematics.
+  const auto is = [&](const char* link, const Vec3& low, const Vec3& high) {
+    const Eigen::AlignedBox3d box = box_of(robot, link);
+    CHECK((box.min() - low).norm() < 2e-6);
+    CHECK((box.max() - high).norm() < 2e-6);
+  };
+  is("one", {-0.133809, 0.155903, 0.011218}, {0.526188, 0.562967, 0.530332});
+  is("two", {1.108566, 0.291247, -0.313767}, {1.323532, 0.744570, 0.188007});
+  is("four", {0.140205, -0.302823, 1.073642}, {0.527786, -0.067812, 1.594475});
+}

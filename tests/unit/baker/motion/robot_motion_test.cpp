@@ -55,8 +55,8 @@ TEST_CASE("rows without a header have the root and the joints in the file's orde
 }
 
 TEST_CASE("a humanoid moves as in MuJoCo") {
-  // Of libmujoco-samples 2.2.2: the bodies of its humanoid by mj_kinematics, each hinge i at 0.05 i, every second one
-  // backwards.
+  // The bodies of its humanoid as mj_kinematics of MuJoCo 2.2.2 places them (Debian's libmujoco-samples): hinge i is at
+  // 0.05 i, every second one backwards.
   const SourceRig rig = read_source("/usr/share/mujoco/model/humanoid/humanoid.xml").rig;
   std::string row = "0.1,-0.2,1.5,0.5,-0.5,0.5,0.5";
   for (int i = 1; i <= 21; ++i) row += "," + std::to_string((i % 2 != 0 ? 0.05 : -0.05) * i);
