@@ -11,17 +11,19 @@ namespace {
 // The corners of the triangles lie on the primitive.
 constexpr std::size_t kSides = 48, kRings = 12;  // around, and from the equator to a pole
 
+// Each side has corners of its own, so that it is drawn flat.
 Mesh box(const Vec3& half) {
-  Mesh out;
-  for (int corner = 0; corner < 8; ++corner) {
-    out.positions.push_back(
-        half.cwiseProduct(Vec3((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1, (corner & 4) != 0 ? 1 : -1)));
-  }
-  const std::array<std::array<Index, 4>, 6> sides{
+  constexpr std::array<std::array<int, 4>, 6> kSides{
       {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
-  for (const auto& s : sides) {
-    out.triangles.push_back({s[0], s[1], s[2]});
-    out.triangles.push_back({s[0], s[2], s[3]});
+  Mesh out;
+  for (const auto& side : kSides) {
+    const auto first = static_cast<Index>(out.positions.size());
+    for (const int corner : side) {
+      out.positions.push_back(
+          half.cwiseProduct(Vec3((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1, (corner & 4) != 0 ? 1 : -1)));
+    }
+    out.triangles.push_back({first, first + 1, first + 2});
+    out.triangles.push_back({first, first + 2, first + 3});
   }
   return out;
 }

@@ -260,7 +260,11 @@ Candidate fit_limbs(const Character& character, const Roles& roles, const BakeSe
 
 Candidate fit_bones(const Character& character, const Roles& roles, const BakeSettings& settings) {
   FittedCharacter out;
-  out.segmentation.regions = segment_by_bones(character, roles, settings.segment.facing, sphere_limit(settings));
+  std::optional<Vec3> facing = settings.segment.facing;
+  const bool is_by_convention = character.rig.robot.is_robot && !facing;
+  if (is_by_convention) facing = Vec3::UnitX();  // x forward, y left, z up (ROS REP 103)
+  out.segmentation.regions = segment_by_bones(character, roles, facing, sphere_limit(settings));
+  if (is_by_convention) out.segmentation.regions.facing = "forward is x, as robots have it";
   Attempt<Spheres> spheres = fit_halves(character, out.segmentation.regions, settings.fit);
   return bound(character, std::move(out), std::move(spheres), settings);
 }

@@ -23,6 +23,7 @@ std::string baked(const small_robot::Files& files) {
   const std::string asset = (files.folder / "arm.sphc").string();
   const tool::Run bake = tool::run("bake " + files.urdf().string() + " -o " + asset);
   REQUIRE(bake.code == 0);
+  CHECK(bake.out.find("tall; forward is x") != std::string::npos);
   return asset + " --source " + files.urdf().string();
 }
 
