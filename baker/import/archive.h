@@ -44,7 +44,9 @@ void members(auto& io, Is<RigJoint> auto& j) {
 }
 void members(auto& io, Is<Mesh> auto& m) { io(m.positions, m.triangles); }
 void members(auto& io, Is<RigCollider> auto& c) { io(c.bone, c.is_convex, c.mesh); }
-void members(auto& io, Is<RobotRig> auto& r) { io(r.is_robot, r.name, r.bone_of, r.root, r.base, r.joints, r.excluded, r.colliders); }
+void members(auto& io, Is<RobotRig> auto& r) {
+  io(r.is_robot, r.name, r.bone_of, r.root, r.base, r.joints, r.excluded, r.colliders);
+}
 void members(auto& io, Is<SourceRig> auto& r) {
   io(r.nodes, r.bones, r.weights, r.morphs, r.clips, r.to_rest, r.pivots, r.robot);
 }

@@ -25,10 +25,10 @@ struct ImportReport {
 };
 
 struct ImportOptions {
-  bool prop = false;      // all meshes as one rigid thing: its only bone is kPropBone
-  bool look = false;      // read the base colours, too
+  bool prop = false;       // all meshes as one rigid thing: its only bone is kPropBone
+  bool look = false;       // read the base colours, too
   bool keep_axes = false;  // of Collada: do not turn the file's up axis to y
-  std::string character;  // of several in a file: what a node of this name, or its skin, has; empty: all
+  std::string character;   // of several in a file: what a node of this name, or its skin, has; empty: all
 };
 
 // The bone of a prop. Its matrix takes the rest pose to the pose's space.

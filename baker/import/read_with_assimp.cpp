@@ -195,7 +195,8 @@ std::string bytes_of_fbx(const std::filesystem::path& path) {
 
 // A file, read; the scene is null where no importer reads it.
 struct ReadFile {
-  explicit ReadFile(const std::filesystem::path& path, bool keep_axes = false) : name(path.string()), files(new OwnFiles(path)) {
+  explicit ReadFile(const std::filesystem::path& path, bool keep_axes = false)
+      : name(path.string()), files(new OwnFiles(path)) {
     importer.SetIOHandler(files);  // which the importer deletes
     // Sticks that importers put where a file has bones and no mesh are no character.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
