@@ -63,7 +63,7 @@ std::vector<std::size_t> parts_of_rig(const SourceRig& rig, const Roles& roles, 
   std::vector<std::tuple<bool, int>> best;  // of the bone that a part follows so far
   for (std::size_t b = 0; b < rig.bones.size(); ++b) {
     const Index node = rig.bones[b].node;
-    PartName part = names[node];
+    PartName part = rig.robot.is_robot ? PartName{} : names[node];
     if (part.name.empty()) part.name = rig.nodes[node].name;
     if (part.name.empty()) part.name = "bone " + std::to_string(b);
     const std::size_t index = list.add(part.name, part.side, static_cast<int>(b), part.is_prop);
@@ -246,7 +246,7 @@ BodyParts find_body_parts(const Character& character, const Roles& roles, const 
     }
     of_triangle.push_back(part);
   }
-  if (!character.rig.bones.empty()) name_by_meshes(character, list, of_triangle);
+  if (!character.rig.bones.empty() && !character.rig.robot.is_robot) name_by_meshes(character, list, of_triangle);
   std::vector<std::size_t> triangles(list.parts().size(), 0);
   for (const std::size_t part : of_triangle) ++triangles[part];
 

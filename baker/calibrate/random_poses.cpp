@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "baker/import/robot_joints.h"
+
 namespace spherechain::baker {
 namespace {
 
@@ -72,6 +74,12 @@ RandomPoses::RandomPoses(const Character& character, const std::vector<Joint>& j
     }
   }
   limits_.resize(rig_.nodes.size());
+  if (rig.robot.is_robot) {
+    rig_.robot = rig.robot;
+    for (const RigJoint& joint : rig.robot.joints) limits_[joint.node].moves = true;
+    plan();
+    return;
+  }
   if (rig.bones.empty() || rig.clips.empty()) {
     for (const Bone& bone : rig_.bones) {
       const Node& node = rig_.nodes[bone.node];
@@ -139,6 +147,7 @@ RandomPoses::RandomPoses(const Character& character, const std::vector<Joint>& j
 
 bool RandomPoses::limit(const std::string& joint, const Vec3& low, const Vec3& high) {
   bool is_there = false;
+  if (rig_.robot.is_robot) return false;  // it has limits of its own
   for (std::size_t n = 0; n < rig_.nodes.size(); ++n) {
     const Node& node = rig_.nodes[n];
     if (node.name != joint) continue;
@@ -220,7 +229,25 @@ std::vector<RandomPoses::Parts> RandomPoses::bent(std::vector<Parts> moving, Ran
   return moving;
 }
 
+std::vector<RandomPoses::Parts> RandomPoses::driven(Random& random) const {
+  const RobotRig& robot = rig_.robot;
+  std::vector<double> values;
+  for (const RigJoint& joint : robot.joints) values.push_back(joint.zero);
+  for (const Index j : driven_joints(robot)) {
+    const RigJoint& joint = robot.joints[j];
+    if (std::isfinite(joint.lower) && std::isfinite(joint.upper))
+      values[j] = random.between(joint.lower, joint.upper);
+    else if (joint.kind == RigJointKind::kHinge)
+      values[j] = random.between(-std::numbers::pi, std::numbers::pi);
+  }
+  follow_mimics(robot, values);
+  std::vector<Parts> out;
+  for (const Index n : moving_) out.emplace_back(rig_.nodes[n]).local = moved_by_joints(robot, n, values);
+  return out;
+}
+
 std::vector<RandomPoses::Parts> RandomPoses::turned(Random& random) const {
+  if (rig_.robot.is_robot) return driven(random);
   std::vector<Parts> out;
   for (const Index n : moving_) {
     const Limits& limits = limits_[n];

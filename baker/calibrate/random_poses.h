@@ -20,6 +20,8 @@ namespace spherechain::baker {
 // In the second kind each joint turns by up to 5 degrees more about each axis. Without clips all poses are of the
 // third kind: a joint turns by up to 45 degrees, and morphs keep their weight at rest. A rig with pivots and clips has
 // the second kind in place of the third.
+// A robot's poses have a value of each joint evenly within its limits; a hinge without limits turns once around, and a
+// slide without them stays.
 class RandomPoses {
  public:
   // `joints`: the automatic rig's, for a character without bones. The character must outlive this.
@@ -70,6 +72,7 @@ class RandomPoses {
   void turn_about_pivot(Index n, Parts& parts, const Eigen::Quaterniond& rotation) const;
   std::vector<Parts> bent(std::vector<Parts> moving, Random& random) const;
   std::vector<Parts> turned(Random& random) const;
+  std::vector<Parts> driven(Random& random) const;
   void plan();
   std::vector<Affine> bones_in(const std::vector<Parts>& moving) const;
 

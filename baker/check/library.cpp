@@ -10,6 +10,8 @@
 #include <set>
 
 #include "baker/check/json_input.h"
+#include "baker/import/import.h"
+#include "baker/import/robot_model.h"
 #include "baker/mesh/error.h"
 #include "baker/mesh/utf8.h"
 #include "baker/play/asset_file.h"
@@ -30,14 +32,15 @@ std::string extension_of(const fs::path& file) {
 }
 
 bool may_be_character(const fs::path& file) {
-  static const std::set<std::string> kExtensions{".glb", ".gltf", ".vrm", ".fbx", ".dae",     ".zae",  ".obj",
-                                                 ".x",   ".ms3d", ".b3d", ".3ds", ".md5mesh", ".smd",  ".iqm",
-                                                 ".mdl", ".md2",  ".md3", ".ply", ".stl",     ".mesh", ".mesh.xml"};
-  return kExtensions.count(extension_of(file)) > 0;
+  static const std::set<std::string> kExtensions{
+      ".glb",     ".gltf", ".vrm", ".fbx", ".dae", ".zae", ".obj", ".x",   ".ms3d", ".b3d",      ".3ds",
+      ".md5mesh", ".smd",  ".iqm", ".mdl", ".md2", ".md3", ".ply", ".stl", ".mesh", ".mesh.xml", ".urdf"};
+  const std::string extension = extension_of(file);
+  return kExtensions.count(extension) > 0 || (extension == ".xml" && is_robot(file));
 }
 
 bool may_be_motion(const fs::path& file) {
-  static const std::set<std::string> kExtensions{".bvh", ".fbx", ".glb", ".gltf", ".vrm", ".dae", ".zae", ".npz"};
+  static const std::set<std::string> kExtensions{".bvh", ".fbx", ".glb", ".gltf", ".vrm", ".dae", ".zae", ".npz", ".csv"};
   // AMASS has the shapes of its persons beside their motions.
   const std::string stem = file.stem().string();
   const bool is_shape = extension_of(file) == ".npz" && (stem == "shape" || stem.ends_with("_stagei"));
@@ -89,7 +92,7 @@ Motions motions_at(const fs::path& path, Folders& looked_at) {
   for (const Found& found : files_below(path, may_be_motion, looked_at))
     out.push_back({as_utf8(found.path.lexically_relative(path).string()), found.path, found.error});
   if (out.empty())
-    throw Error(ExitCode::kFile, path.string() + ": has no recordings (BVH, FBX, glTF, Collada or .npz)");
+    throw Error(ExitCode::kFile, path.string() + ": has no recordings (BVH, FBX, glTF, Collada, .npz or CSV)");
   return out;
 }
 
@@ -161,6 +164,17 @@ class Manifest {
   Folders& looked_at_;
 };
 
+// Links of robots are no characters.
+void remove_links(std::vector<LibraryCharacter>& characters) {
+  std::set<fs::path> links;
+  for (const LibraryCharacter& one : characters) {
+    if (!is_robot(one.file)) continue;
+    for (const fs::path& file : files_read_with(one.file)) links.insert(fs::weakly_canonical(file));
+  }
+  std::erase_if(characters,
+                [&](const LibraryCharacter& one) { return links.contains(fs::weakly_canonical(one.file)); });
+}
+
 // The shortest ends of the paths that are all different.
 void give_names(std::vector<LibraryCharacter>& characters) {
   const auto tail = [](const fs::path& path, int parts) {
@@ -196,8 +210,11 @@ Library read_library(const std::vector<std::string>& paths, const std::string& m
       const std::vector<LibraryCharacter> all = Manifest(path, library.folders).read(config);
       out.insert(out.end(), all.begin(), all.end());
     } else if (fs::is_directory(path)) {
+      std::vector<LibraryCharacter> all;
       for (const Found& found : files_below(path, may_be_character, library.folders))
-        out.push_back({{}, found.path, {}, config, found.path.lexically_relative(path), found.error});
+        all.push_back({{}, found.path, {}, config, found.path.lexically_relative(path), found.error});
+      remove_links(all);
+      out.insert(out.end(), all.begin(), all.end());
     } else {
       out.push_back({{}, path, {}, config, fs::path(path).filename()});
     }
@@ -215,7 +232,14 @@ Library read_library(const std::vector<std::string>& paths, const std::string& m
                 paths.front() + ": has no characters (docs/cli/check.md lists the endings that are searched for)");
   if (!motion.empty()) {
     const Motions shared = motions_at(motion, library.folders);
-    for (LibraryCharacter& character : out) append(character.motions, shared);
+    for (LibraryCharacter& character : out) {
+      // In a folder, CSV files are for robots and all others for other characters.
+      const bool takes_csv = is_robot(character.file);
+      for (const LibraryCharacter::Motion& one : shared) {
+        if (!fs::is_directory(motion) || (extension_of(one.file) == ".csv") == takes_csv)
+          character.motions.push_back(one);
+      }
+    }
   }
   give_names(out);
   return library;

@@ -12,6 +12,8 @@
 #include "baker/filter/confidence.h"
 #include "baker/filter/find_filter.h"
 #include "baker/filter/joint_limits.h"
+#include "baker/filter/srdf.h"
+#include "baker/mesh/error.h"
 #include "baker/os/written_file.h"
 #include "baker/play/target.h"
 
@@ -75,13 +77,17 @@ std::string filter_text(const PartFilter& filter) {
 
 ExitCode run_filter(const FilterOptions& options) {
   const MotionChoice recording{{}, {}, options.motion};
+  const bool is_srdf = has_ending(options.output, ".srdf");
   check_outputs(
       with_motion(with_source({{"ASSET", options.asset}, {"--limits", options.limits}}, "--source", options.source),
                   recording),
-      {{"--output", options.output, FileKind::kJson}}, Force::kNone);
+      {{"--output", options.output, is_srdf ? FileKind::kColliders : FileKind::kJson}}, Force::kNone);
   const FrameChoice own_frames{0, 0};
   AnimatedAsset animated(options.asset, options.source, {}, own_frames);
   animated.check_clusters();
+  if (is_srdf && !animated.character().rig.robot.is_robot) {
+    throw Error(ExitCode::kUsage, "-o: " + options.output + ": an SRDF is written of a robot alone (name it .json)");
+  }
   RandomPoses poses(animated.character(), joints_of(animated.asset()));
   if (!options.limits.empty()) read_joint_limits(options.limits, poses);
   FilterSearch search(animated, choose_target("auto"));
@@ -101,7 +107,8 @@ ExitCode run_filter(const FilterOptions& options) {
   }
   const PartFilter filter = search.result();
   if (!options.output.empty()) {
-    write_atomically(options.output, part_filter_json(filter, animated.asset(), options.asset));
+    write_atomically(options.output, is_srdf ? srdf_of(filter, animated.character().rig)
+                                             : part_filter_json(filter, animated.asset(), options.asset));
   }
   say("{}", filter_text(filter));
   if (!options.output.empty()) say("wrote {}\n", options.output);

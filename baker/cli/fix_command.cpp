@@ -12,6 +12,7 @@
 #include "baker/cli/outputs.h"
 #include "baker/cli/progress.h"
 #include "baker/fix/fix_character.h"
+#include "baker/import/robot_model.h"
 #include "baker/motion/capture.h"
 #include "baker/motion/sequence.h"
 #include "baker/os/own_folder.h"
@@ -93,6 +94,7 @@ FileKind output_kind(const FixOptions& options) {
 
 void check_files(const FixOptions& options) {
   check_regular_file(options.input);
+  refuse_robot(options.input);
   const FileKind kind = output_kind(options);
   const bool writes_bvh = kind == FileKind::kBvh;
   if (writes_bvh && !has_ending(options.motion, ".bvh")) {

@@ -17,6 +17,7 @@
 #include "baker/play/player.h"
 #include "baker/play/responder.h"
 #include "baker/play/target.h"
+#include "baker/report/collider_report.h"
 #include "baker/report/part_contacts.h"
 #include "baker/report/parts.h"
 #include "baker/report/play_frames.h"
@@ -103,6 +104,7 @@ ExitCode run_play(const PlayOptions& options) {
   std::optional<Responder> responder;
   if (options.respond) responder.emplace(animated, target, options.ahead);
   const char* const refit = refit_name(animated.asset()->refit_rule());
+  const ColliderAlarms alarms = collider_alarms_of(animated);
   std::optional<PlayFile> file;
   if (!options.json.empty()) {
     file.emplace(options.json,
@@ -140,6 +142,7 @@ ExitCode run_play(const PlayOptions& options) {
     }
     if (file) {
       ordered_json tail{{"clips", contacts.json()}};
+      if (alarms.poses > 0) tail["colliders"] = collider_json(alarms, animated);
       if (responder) tail["response"] = response_json(responder->measures());
       file->finish(tail);
     }
@@ -152,6 +155,7 @@ ExitCode run_play(const PlayOptions& options) {
   say("{}{}\n{}\n{}(radius {}, refit {}, backend {})\n", frames_text(animated), contacts.text(options.motion.name()),
       tally.spheres_text(), tally.times_text(), options.radius, refit,
       on_cuda ? "cuda: refit and all pairs in one" : backend_text(target));
+  say("{}", collider_text(alarms, animated));
   if (responder) say("{}", response_text(responder->measures(), animated));
   if (!options.json.empty()) say("wrote {}\n", options.json);
   return ExitCode::kDone;

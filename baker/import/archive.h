@@ -39,8 +39,16 @@ void members(auto& io, Is<Bone> auto& b) { io(b.node, b.inverse_bind); }
 void members(auto& io, Is<Morph> auto& m) { io(m.name, m.vertices, m.deltas, m.rest_weight); }
 void members(auto& io, Is<Channel> auto& c) { io(c.path, c.target, c.interpolation, c.times, c.values); }
 void members(auto& io, Is<Clip> auto& c) { io(c.name, c.duration, c.in_file, c.fbx_id, c.channels); }
+void members(auto& io, Is<RigJoint> auto& j) {
+  io(j.name, j.kind, j.node, j.axis, j.anchor, j.zero, j.lower, j.upper, j.mimic, j.multiplier, j.offset);
+}
+void members(auto& io, Is<Mesh> auto& m) { io(m.positions, m.triangles); }
+void members(auto& io, Is<RigCollider> auto& c) { io(c.bone, c.is_convex, c.mesh); }
+void members(auto& io, Is<RobotRig> auto& r) {
+  io(r.is_robot, r.name, r.bone_of, r.root, r.base, r.joints, r.excluded, r.colliders);
+}
 void members(auto& io, Is<SourceRig> auto& r) {
-  io(r.nodes, r.bones, r.weights, r.morphs, r.clips, r.to_rest, r.pivots);
+  io(r.nodes, r.bones, r.weights, r.morphs, r.clips, r.to_rest, r.pivots, r.robot);
 }
 void members(auto& io, Is<SourceLook> auto& l) { io(l.uvs, l.material_of, l.materials, l.pictures); }
 void members(auto& io, Is<SourceMesh> auto& m) {

@@ -16,6 +16,7 @@
 #include "baker/import/obj_file.h"
 #include "baker/import/read_bvh.h"
 #include "baker/import/read_in_child.h"
+#include "baker/import/robot_model.h"
 #include "baker/import/robot_motion.h"
 #include "baker/import/smpl_motion.h"
 #include "baker/mesh/error.h"
@@ -130,6 +131,7 @@ std::vector<std::filesystem::path> files_beside(const std::filesystem::path& sou
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(source, ignored)) return {};
   if (is_gltf(source)) return files_of_gltf(source);
+  if (is_robot(source)) return files_read_with(source);
   if (extension_of(source) == ".obj") return files_of_obj(source);
   return {};
 }
@@ -139,8 +141,9 @@ std::vector<std::filesystem::path> files_read_with(const std::filesystem::path& 
   if (!std::filesystem::is_regular_file(source, ignored)) return {};
   if (is_gltf(source) || is_recording(source) || is_arrays(source)) return {};  // files_beside has a glTF's
   try {
-    const auto files = from_bytes<std::vector<std::string>>(
-        read_in_child(source.string(), [&] { return to_bytes(files_read_with_assimp(source)); }));
+    const auto files = from_bytes<std::vector<std::string>>(read_in_child(source.string(), [&] {
+      return to_bytes(is_robot(source) ? files_of_robot(source) : files_read_with_assimp(source));
+    }));
     return {files.begin(), files.end()};
   } catch (const Error&) {  // which read_source says
     return {};
@@ -161,6 +164,7 @@ SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& o
     auto received = from_bytes<NotedMesh>(read_in_child(path.string(), [&] {
       take_notes();  // the parent's
       NotedMesh read{is_gltf(path)     ? read_with_tinygltf(path, options)
+                     : is_robot(path)  ? read_robot(path, options)
                      : is_arrays(path) ? read_with_numpy(path)
                                        : read_with_assimp(path, options),
                      {}};
@@ -180,6 +184,7 @@ std::string read_as_glb(const std::filesystem::path& path) {
   if (is_recording(path) && !is_gltf(path)) {
     throw Error(ExitCode::kFile, path.string() + kNoMesh);
   }
+  refuse_robot(path);
   return read_in_child(path.string(), [&] {
     if (is_gltf(path)) return pack_gltf(path);
     if (!is_arrays(path)) return glb_with_assimp(path);

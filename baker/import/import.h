@@ -14,7 +14,7 @@ namespace spherechain::baker {
 
 // Findings and repairs of the import, for the bake report.
 struct ImportReport {
-  std::string importer;                // "assimp", "tinygltf", "bvh" or "numpy"
+  std::string importer;                // "assimp", "tinygltf", "bvh", "numpy" or "robot"
   std::size_t meshes = 0;              // mesh instances in the source's scene
   std::size_t components = 0;          // connected pieces after welding
   std::size_t welded_vertices = 0;     // distinct positions over all pieces
@@ -25,9 +25,10 @@ struct ImportReport {
 };
 
 struct ImportOptions {
-  bool prop = false;      // all meshes as one rigid thing: its only bone is kPropBone
-  bool look = false;      // read the base colours, too
-  std::string character;  // of several in a file: what a node of this name, or its skin, has; empty: all
+  bool prop = false;       // all meshes as one rigid thing: its only bone is kPropBone
+  bool look = false;       // read the base colours, too
+  bool keep_axes = false;  // of Collada: do not turn the file's up axis to y
+  std::string character;   // of several in a file: what a node of this name, or its skin, has; empty: all
 };
 
 // The bone of a prop. Its matrix takes the rest pose to the pose's space.

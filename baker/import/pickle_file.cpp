@@ -16,8 +16,8 @@
 namespace spherechain::baker {
 namespace {
 
-[[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what); }
-[[noreturn]] void fail_damaged() { fail("is damaged or cut off (save it again)"); }
+[[noreturn]] void fail_pickle(const std::string& what) { throw std::runtime_error(what); }
+[[noreturn]] void fail_damaged() { fail_pickle("is damaged or cut off (save it again)"); }
 
 using Ref = std::size_t;  // a value's number; lists may share values, or hold themselves
 
@@ -52,7 +52,7 @@ class PickleMachine {
  public:
   explicit PickleMachine(std::string_view bytes) : bytes_(bytes) {
     if (bytes.size() < 2 || bytes[0] != '\x80') {
-      fail("is no pickle of protocol 2 to 5 (save it again by pickle.dump with protocol 4)");
+      fail_pickle("is no pickle of protocol 2 to 5 (save it again by pickle.dump with protocol 4)");
     }
   }
 
@@ -71,7 +71,7 @@ class PickleMachine {
     switch (code) {
       case 0x80:  // PROTO
         if (const auto version = unsigned_of(1); version < 2 || version > 5) {
-          fail(fmt::format("is a pickle of protocol {}; 2 to 5 are read (save it with protocol 4)", version));
+          fail_pickle(fmt::format("is a pickle of protocol {}; 2 to 5 are read (save it with protocol 4)", version));
         }
         return;
       case 0x95:  // FRAME
@@ -174,7 +174,7 @@ class PickleMachine {
       case 'b':
         return build();
       default:
-        fail(
+        fail_pickle(
             fmt::format("has the pickle instruction {:#04x}, which is not read (save numbers, lists, dictionaries and "
                         "numpy tables)",
                         code));
@@ -228,7 +228,7 @@ class PickleMachine {
   void push_global(const std::string& module, const std::string& name) {
     const std::optional<Maker> maker = maker_of(module, name);
     if (!maker) {
-      fail(
+      fail_pickle(
           fmt::format("holds '{}.{}', which is not read: a pickle may run any program (save numbers, lists, "
                       "dictionaries and numpy tables)",
                       module, name));
@@ -386,7 +386,7 @@ class TablesOf {
       }
       return;
     }
-    if (depth == kDepthMax) fail("has dictionaries in each other without end");
+    if (depth == kDepthMax) fail_pickle("has dictionaries in each other without end");
     // Some programs put all into a dictionary of one name, that of the recording.
     if (name.empty() && value.items.size() == 2 && machine_.at(value.items[1]).kind == Kind::kDict) {
       add("", value.items[1], depth + 1);
@@ -406,7 +406,7 @@ class TablesOf {
 
   void count() {
     constexpr std::size_t kMax = 10'000'000;
-    if (++count_ > kMax) fail("has more than 10000000 values in lists (save numpy tables)");
+    if (++count_ > kMax) fail_pickle("has more than 10000000 values in lists (save numpy tables)");
   }
 
   // Lists of lists of one size are a table.
@@ -426,25 +426,26 @@ class TablesOf {
           into = *value.table;
           return;
         }
-        if (!value.table->shape.empty()) fail("is a list of tables, which is not read (save one table)");
+        if (!value.table->shape.empty()) fail_pickle("is a list of tables, which is not read (save one table)");
         into.numbers.insert(into.numbers.end(), value.table->numbers.begin(), value.table->numbers.end());
         into.texts.insert(into.texts.end(), value.table->texts.begin(), value.table->texts.end());
         break;
       case Kind::kList:
       case Kind::kTuple:
-        if (depth == kDepthMax) fail("has lists in each other without end");
+        if (depth == kDepthMax) fail_pickle("has lists in each other without end");
         if (into.shape.size() <= static_cast<std::size_t>(depth)) into.shape.push_back(value.items.size());
-        if (into.shape[static_cast<std::size_t>(depth)] != value.items.size()) fail("has lists of different lengths");
+        if (into.shape[static_cast<std::size_t>(depth)] != value.items.size())
+          fail_pickle("has lists of different lengths");
         for (const Ref ref : value.items) put(machine_.at(ref), depth + 1, into);
         break;
       default:
-        fail("holds what is neither a number nor a text");
+        fail_pickle("holds what is neither a number nor a text");
     }
     std::size_t size = 1;
     if (depth == 0) {
       for (const std::size_t n : into.shape) size *= n;
       if (size != into.numbers.size() + into.texts.size() || (!into.numbers.empty() && !into.texts.empty())) {
-        fail("has lists of different lengths, or numbers between texts");
+        fail_pickle("has lists of different lengths, or numbers between texts");
       }
     }
   }

@@ -195,11 +195,13 @@ std::string bytes_of_fbx(const std::filesystem::path& path) {
 
 // A file, read; the scene is null where no importer reads it.
 struct ReadFile {
-  explicit ReadFile(const std::filesystem::path& path) : name(path.string()), files(new OwnFiles(path)) {
+  explicit ReadFile(const std::filesystem::path& path, bool keep_axes = false)
+      : name(path.string()), files(new OwnFiles(path)) {
     importer.SetIOHandler(files);  // which the importer deletes
     // Sticks that importers put where a file has bones and no mesh are no character.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, keep_axes);
     if (std::string bytes = bytes_of_fbx(path); !bytes.empty()) {
       fbx = read_fbx(bytes);
       names = make_names_unique(bytes, fbx);
@@ -347,7 +349,7 @@ Files files_read_with_assimp(const std::filesystem::path& path) {
 }
 
 SourceMesh read_with_assimp(const std::filesystem::path& path, const ImportOptions& options) {
-  const ReadFile read(path);
+  const ReadFile read(path, options.keep_axes);
   const aiScene& scene = read.scene_or_fail();
   const AssimpScene flat = flatten(scene, read.names, read.name, options.character);
   SourceMesh out = source_of(read, flat);

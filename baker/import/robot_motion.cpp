@@ -3,11 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <fstream>
-#include <iterator>
+#include <initializer_list>
 
 #include "baker/import/archive.h"
 #include "baker/import/notes.h"
@@ -16,14 +12,6 @@
 
 namespace spherechain::baker {
 namespace {
-
-constexpr std::size_t kRoot = 7;  // numbers of the root's place
-
-bool ends_with_csv(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return ending == ".csv";
-}
 
 // Some converters write w first. A robot stands upright most of the time, and read the wrong way it would not.
 bool is_w_first(const std::vector<double>& rotations) {
@@ -96,60 +84,6 @@ class MotionOfArrays {
   const std::string& file_;
 };
 
-// The tables of a .csv, by GMR's names.
-Arrays parse_csv(std::string_view text, const std::string& file) {
-  Arrays out;
-  Array &places = out["root_pos"], &turns = out["root_rot"], &joints = out["dof_pos"];
-  out["fps"].numbers = {30};
-  std::size_t line = 0, frames = 0, width = 0;
-  std::vector<std::string> names;
-  const auto fail = [&](const std::string& what) {
-    throw Error(ExitCode::kFile, fmt::format("{}: line {}: {}", file, line, what));
-  };
-  while (!text.empty()) {
-    ++line;
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view row = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (row.ends_with('\r')) row.remove_suffix(1);
-    if (row.empty()) continue;
-    std::vector<double> numbers;
-    std::vector<std::string> words;
-    while (true) {
-      const std::size_t comma = std::min(row.find(','), row.size());
-      std::string_view word = row.substr(0, comma);
-      while (word.starts_with(' ')) word.remove_prefix(1);
-      while (word.ends_with(' ')) word.remove_suffix(1);
-      double number = 0;
-      const auto [last, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-      if (error == std::errc() && last == word.data() + word.size() && !word.empty()) numbers.push_back(number);
-      words.emplace_back(word);
-      if (comma == row.size()) break;
-      row.remove_prefix(comma + 1);
-    }
-    if (frames == 0 && names.empty() && numbers.empty()) {
-      names = std::move(words);
-      continue;
-    }
-    if (numbers.size() != words.size()) fail("has a word that is no number");
-    if (width == 0) width = numbers.size();
-    if (width <= kRoot || numbers.size() != width || (!names.empty() && names.size() != width))
-      fail(fmt::format("{} numbers, where x y z, a quaternion x y z w and joints are expected, as in every line",
-                       numbers.size()));
-    const auto at = numbers.begin();
-    places.numbers.insert(places.numbers.end(), at, at + 3);
-    turns.numbers.insert(turns.numbers.end(), at + 3, at + kRoot);
-    joints.numbers.insert(joints.numbers.end(), at + kRoot, numbers.end());
-    ++frames;
-  }
-  if (frames == 0) throw Error(ExitCode::kFile, file + ": has no frames");
-  places.shape = {frames, 3};
-  turns.shape = {frames, 4};
-  joints.shape = {frames, width - kRoot};
-  if (!names.empty()) out["dof_names"].texts.assign(names.begin() + kRoot, names.end());
-  return out;
-}
-
 // The motion that the child process sends, with its notes.
 struct NotedMotion {
   RobotMotion motion;
@@ -166,20 +100,12 @@ std::optional<RobotMotion> robot_motion(const Arrays& arrays, const std::string&
   return MotionOfArrays(arrays, file).read();
 }
 
-bool is_robot_motion(const std::filesystem::path& path) { return ends_with_csv(path) || is_arrays(path); }
-
-RobotMotion read_robot_motion(const std::filesystem::path& path) {
+RobotMotion read_robot_arrays(const std::filesystem::path& path) {
   check_regular_file(path);
   const std::string name = path.string();
   auto read = from_bytes<NotedMotion>(read_in_child(name, [&] {
     take_notes();  // the parent's
-    Arrays arrays;
-    if (ends_with_csv(path)) {
-      std::ifstream file(path, std::ios::binary);
-      arrays = parse_csv(std::string(std::istreambuf_iterator<char>(file), {}), name);
-    } else {
-      arrays = read_arrays(path);
-    }
+    const Arrays arrays = read_arrays(path);
     auto motion = robot_motion(arrays, name);
     if (!motion)
       throw Error(ExitCode::kFile, name + ": holds no motion of a robot ('root_pos', 'root_rot', 'dof_pos')");

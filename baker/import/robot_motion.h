@@ -30,12 +30,7 @@ struct RobotMotion {
 // names no frame rate. Throws Error(kFile) that begins with `file` where the tables do not fit each other.
 std::optional<RobotMotion> robot_motion(const Arrays& arrays, const std::string& file);
 
-// True if read_robot_motion may read a file: arrays (arrays.h), or numbers between commas (.csv).
-bool is_robot_motion(const std::filesystem::path& path);
-
-// Reads an .npz, a pickle or a .csv in a child process. A row of a .csv is a frame: root x y z, its quaternion x y z w,
-// joints; a first row of names is allowed. It has 30 frames a second. Throws Error(kFile), also where there is no such
-// motion in it.
-RobotMotion read_robot_motion(const std::filesystem::path& path);
+// Reads such tables of an .npz or a pickle in a child process. Throws Error(kFile), also where there is no such motion.
+RobotMotion read_robot_arrays(const std::filesystem::path& path);
 
 }  // namespace spherechain::baker

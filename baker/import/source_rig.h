@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "baker/import/robot_rig.h"
 #include "baker/mesh/mesh.h"
 
 namespace spherechain::baker {
@@ -88,6 +89,7 @@ struct SourceRig {
   Affine to_rest = Affine::Identity();  // from the scene's axes and units to those of the rest positions
   std::vector<Vec3> pivots;             // of all nodes; empty where joints turn where they are bound (pivots.h)
   bool are_pivots_from_skin = false;    // the file does not say where its joints turn
+  RobotRig robot{};
 };
 
 // Which of the maps that a skin's bones are at rest holds for most of it: the one nearest to the median of all, entry

@@ -10,6 +10,7 @@
 #include "baker/mesh/error.h"
 #include "baker/motion/clip.h"
 #include "baker/motion/frame_times.h"
+#include "baker/motion/robot_motion.h"
 
 namespace spherechain::baker {
 namespace {
@@ -366,6 +367,7 @@ class CarriedByRole : public CarriedMotion {
 std::unique_ptr<CarriedMotion> carried_motion(const std::filesystem::path& file, const SourceRig& rig,
                                               const std::vector<Vec3>& rest, const BodyFrame& frame,
                                               const std::string& character) {
+  if (rig.robot.is_robot) return std::make_unique<CarriedByName>(read_robot_motion(file, rig), rig, 1);
   Capture capture = read_capture(file);
   if (const double unit = same_skeleton(rig, capture.rig); unit > 0)
     return std::make_unique<CarriedByName>(std::move(capture), rig, unit);

@@ -260,7 +260,11 @@ Candidate fit_limbs(const Character& character, const Roles& roles, const BakeSe
 
 Candidate fit_bones(const Character& character, const Roles& roles, const BakeSettings& settings) {
   FittedCharacter out;
-  out.segmentation.regions = segment_by_bones(character, roles, settings.segment.facing, sphere_limit(settings));
+  std::optional<Vec3> facing = settings.segment.facing;
+  const bool is_by_convention = character.rig.robot.is_robot && !facing;
+  if (is_by_convention) facing = Vec3::UnitX();  // x forward, y left, z up (ROS REP 103)
+  out.segmentation.regions = segment_by_bones(character, roles, facing, sphere_limit(settings));
+  if (is_by_convention) out.segmentation.regions.facing = "forward is x, as robots have it";
   Attempt<Spheres> spheres = fit_halves(character, out.segmentation.regions, settings.fit);
   return bound(character, std::move(out), std::move(spheres), settings);
 }
@@ -323,6 +327,11 @@ FittedCharacter fit_character(const Character& character, const Roles& roles, co
     return std::move(*candidate);
   };
   if (settings.import.prop) return taken_or_fail(fit_prop(character, settings));
+  if (character.rig.robot.is_robot) {
+    FittedCharacter bones = taken_or_fail(fit_bones(character, roles, settings));
+    bones.segmentation.choice.strategy = "links";
+    return bones;
+  }
   const bool one_fit = settings.bind.rule == RefitRule::kPaper || settings.segment.body != BodyKind::kUnknown;
   Choice tried;
   Candidate limbed = fit_limbs(character, roles, settings, one_fit ? Wraps::kAll : Wraps::kUnmoved, tried);
@@ -381,7 +390,11 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings, cons
   }
   run_rig(out, progress);
   const bool is_paper = settings.bind.rule == RefitRule::kPaper;
-  const PartPairs held = is_paper ? PartPairs{} : held_props(out.body_parts);
+  PartPairs held = is_paper ? PartPairs{} : held_props(out.body_parts);
+  for (const auto& [a, b] : out.character.rig.robot.excluded) {
+    const auto name = [&](Index bone) { return out.character.rig.nodes[out.character.rig.bones[bone].node].name; };
+    held.push_back({name(a), name(b)});
+  }
   if (!settings.edits.empty() || !held.empty()) stage(out, progress, "edits", [&] { edit(out, held); });
   run_after_fit(out, progress);
   return out;

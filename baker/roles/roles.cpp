@@ -309,6 +309,11 @@ std::vector<std::string> limbs_by_shape(const Roles& roles) {
 }
 
 Roles find_roles(const SourceRig& rig, const std::vector<Vec3>& positions, const RoleFile& file, BodyKind wanted) {
+  if (rig.robot.is_robot) {
+    Roles links;
+    links.of_node.assign(rig.nodes.size(), {"other", -1, "a robot's link"});
+    return links;
+  }
   const std::vector<Hint> names = hints_from_names(rig);
   Skeleton skeleton = make_skeleton(rig, positions);
   join_joint_parts(skeleton, with_file(rig, file, names));

@@ -53,6 +53,7 @@ RoleFile parse_role_file(const std::string& json, const std::string& file);
 // The roles of a rig's nodes. The result does not depend on the order of the nodes, nor on place, size and orientation.
 // `positions`: the rest positions of the vertices that rig.weights belong to; empty without skin.
 // `wanted`: decides whether a body with two pairs of limbs is a biped or a quadruped; kUnknown: its pose decides.
+// A robot has none: its links are its parts.
 // Throws Error(kFile) where the role file names a node that does not exist.
 Roles find_roles(const SourceRig& rig, const std::vector<Vec3>& positions, const RoleFile& file = {},
                  BodyKind wanted = BodyKind::kUnknown);

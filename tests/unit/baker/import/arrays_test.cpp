@@ -218,7 +218,7 @@ TEST_CASE("files that are cut off or have a changed byte are read or refused, an
   CHECK(refused > 1000);
 }
 
-TEST_CASE("a robot's motion is read from GMR's tables and from a .csv, and goes to no human") {
+TEST_CASE("a robot's motion is read from GMR's tables, and goes to no human") {
   const TemporaryFolder folder;
   const Numbers places{0, 0, 0.8, 0.1, 0, 0.8}, upright{0, 0, 0.6, 0.8, 0, 0, 0, 1},
       w_first{0.8, 0, 0, 0.6, 1, 0, 0, 0};
@@ -229,22 +229,18 @@ TEST_CASE("a robot's motion is read from GMR's tables and from a .csv, and goes 
                                    {"dof_pos", npy({1, 2, 3, 4, 5, 6}, "(2, 3)")},
                                    {"dof_names", npy(Texts{"knee", "hip", "neck"})}}));
   };
-  const std::string row = "0,0,.8,0,0,.6,.8,1,2,3\n.1,0,.8,0,0,0,1,4,5,6\r\n";
-  for (const auto& path : {file("a.npz", upright), file("b.npz", w_first), folder.write("c.csv", row),
-                           folder.write("d.csv", "x,y,z,qx,qy,qz,qw,knee, hip,neck\n" + row)}) {
+  for (const auto& path : {file("a.npz", upright), file("b.npz", w_first)}) {
     CAPTURE(path.string());
-    const RobotMotion motion = read_robot_motion(path);
-    CHECK(motion.fps == (path.extension() == ".csv" ? 30 : 50));
+    const RobotMotion motion = read_robot_arrays(path);
+    CHECK(motion.fps == 50);
     REQUIRE(motion.frames() == 2);
     CHECK(motion.root_positions[1] == Vec3(0.1, 0, 0.8));
     CHECK(motion.root_rotations[0].isApprox(Eigen::Quaterniond(0.8, 0, 0, 0.6)));
     CHECK(motion.joint_count == 3);
     CHECK(motion.values(1)[2] == 6);
-    CHECK(motion.joint_names == (path.filename() == "c.csv" ? Texts{} : Texts{"knee", "hip", "neck"}));
+    CHECK(motion.joint_names == Texts{"knee", "hip", "neck"});
   }
   CHECK(contains(refusal(folder.path / "a.npz", [](const auto& path) { read_source(path); }), "motion of a robot"));
-  const auto read = [](const auto& path) { read_robot_motion(path); };
-  CHECK(contains(refusal(folder.write("e.csv", row + "0,0,0\n"), read), "line 3: 3 numbers"));
-  CHECK(contains(refusal(folder.write("f.csv", "1,2,3,4,5,6,7,walk\n"), read), "no number"));
+  const auto read = [](const auto& path) { read_robot_arrays(path); };
   CHECK(contains(refusal(folder.write("g.npz", npz({{"dof_pos", npy({1}, "(1, 1)")}})), read), "no 'root_pos'"));
 }
