@@ -40,7 +40,8 @@ bool may_be_character(const fs::path& file) {
 }
 
 bool may_be_motion(const fs::path& file) {
-  static const std::set<std::string> kExtensions{".bvh", ".fbx", ".glb", ".gltf", ".vrm", ".dae", ".zae", ".npz", ".csv"};
+  static const std::set<std::string> kExtensions{".bvh", ".fbx", ".glb", ".gltf", ".vrm",
+                                                 ".dae", ".zae", ".npz", ".csv"};
   // AMASS has the shapes of its persons beside their motions.
   const std::string stem = file.stem().string();
   const bool is_shape = extension_of(file) == ".npz" && (stem == "shape" || stem.ends_with("_stagei"));

@@ -7,8 +7,8 @@
 
 #include "baker/export/formats.h"
 #include "baker/export/glb_json.h"
-#include "baker/import/rest_nodes.h"
 #include "baker/export/simple_volumes.h"
+#include "baker/import/rest_nodes.h"
 #include "baker/mesh/decompose.h"
 #include "baker/mesh/error.h"
 #include "baker/volumes/volume_json.h"
