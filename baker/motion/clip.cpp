@@ -13,13 +13,21 @@ namespace {
 // A clip of one key is a pose: it shows for a frame.
 double length_of(const Clip& clip) { return std::max(clip.duration, 1.0 / 30); }
 
-// A few keys between do not change it, or a few that are missing.
+// The mean of the gaps that are about as long as most. A few keys between do not change it, or a few that are missing.
 double usual_gap(const std::vector<double>& times) {
+  constexpr double kAlike = 0.2;
   std::vector<double> gaps;
   for (std::size_t k = 1; k < times.size(); ++k) gaps.push_back(times[k] - times[k - 1]);
   const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
   std::nth_element(gaps.begin(), middle, gaps.end());
-  return *middle;
+  const double median = *middle;
+  double sum = 0, count = 0;
+  for (const double gap : gaps) {
+    if (std::abs(gap - median) > kAlike * median) continue;
+    sum += gap;
+    ++count;
+  }
+  return sum / count;
 }
 
 bool keys_are_frames(const Clip& clip, double rate) {
