@@ -44,8 +44,12 @@ class MeshFinder {
     const std::size_t slash = std::min(name.find('/', kPackage.size()), name.size());
     const std::string package = name.substr(kPackage.size(), slash - kPackage.size());
     const std::string rest = name.substr(std::min(slash + 1, name.size()));
+    // A stranger's file may name any folder around it: that is a package where it says so, or holds the URDF's folder.
     for (fs::path up = folder_; up != up.root_path(); up = up.parent_path()) {
-      if (up.filename() == package || package_name(up) == package) return in(up, rest);
+      const bool is_near = up == folder_ || up == folder_.parent_path();
+      std::error_code ignored;
+      const bool is_package = is_near || fs::is_regular_file(up / "package.xml", ignored);
+      if (is_package && (up.filename() == package || package_name(up) == package)) return in(up, rest);
     }
     return in(home_, rest);  // a package in a folder of another name
   }

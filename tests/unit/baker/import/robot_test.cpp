@@ -77,6 +77,12 @@ TEST_CASE("a robot's meshes lie in its folder or in its package") {
     const auto text = with(small_robot::kUrdf, "\"meshes/link.stl\"", '"' + std::string(name) + '"');
     CHECK(contains(refusal(files.write("urdf/evil.urdf", text)), "which is outside"));
   }
+  // A folder around it is no package because a stranger's file says so.
+  const std::string around = files.temporary.path.filename().string();
+  std::filesystem::create_directories(files.folder / "urdf/deep");
+  CHECK(!contains(refusal(files.write("urdf/deep/evil.urdf", with(small_robot::kUrdf, "\"meshes/link.stl\"",
+                                                                  "\"package://" + around + "/secret.stl\""))),
+                  "accepted"));
   std::filesystem::create_symlink(files.temporary.path / "secret.stl", files.folder / "meshes/link2.stl");
   CHECK(contains(refusal(files.urdf(with(small_robot::kUrdf, "\"meshes/link.stl\"", "\"meshes/link2.stl\""))),
                  "a link that leads out"));
