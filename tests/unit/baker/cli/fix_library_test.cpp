@@ -136,10 +136,12 @@ TEST_CASE("characters of SPHERECHAIN_TEST_DATA: check finds no fault in a mended
     tool::run("fix " + std::string(std::getenv("SPHERECHAIN_TEST_DATA")) + "/" + file + " --force -o " +
               path("mended.glb") + " --report " + path("report"));
     tool::run("check " + path("mended.glb") + " -o " + path("check") + " --json " + path("check.json"));
+    const json fix = json::parse(tool::contents(path("report/fix.json"))),
+               check = json::parse(tool::contents(path("check.json")));
     std::map<std::string, json> reported;
-    for (const json& clip : json::parse(tool::contents(path("report/fix.json")))["clips"])
-      reported[clip["clip"]] = clip["events"];
-    for (const json& clip : json::parse(tool::contents(path("check.json")))["clips"]) {
+    for (const json& clip : fix["clips"]) reported[clip["clip"]] = clip["events"];
+    CHECK(check["clips"].size() == fix["clips"].size());
+    for (const json& clip : check["clips"]) {
       for (const json& found : clip["events"]) {
         const bool is_fault = found["class"] == "penetration" || found["class"] == "inside";
         if (!is_fault || found["depth_mm"].get<double>() < kSameMeasure) continue;
