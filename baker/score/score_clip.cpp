@@ -2,7 +2,9 @@
 #include "baker/score/score_clip.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include "baker/play/target.h"
 #include "baker/score/limmt.h"
@@ -14,6 +16,33 @@ namespace {
 constexpr int kStep = 10;       // the rate of STaR and nearness are taken in every tenth frame
 constexpr double kNear = 0.02;  // heights between a hand or foot and the skin that it touches
 constexpr double kDeep = 10;    // mm
+
+struct Metric {
+  std::string_view name;
+  bool is_share = false;
+};
+constexpr std::array<Metric, 22> kMetrics{{{"fault_frames", true},
+                                           {"depth_percent_p50"},
+                                           {"depth_percent_p95"},
+                                           {"depth_percent_max"},
+                                           {"deeper_than_1cm", true},
+                                           {"swallowed_area_percent"},
+                                           {"volume_percent"},
+                                           {"intersecting_faces"},
+                                           {"inside_seconds"},
+                                           {"events_per_minute"},
+                                           {"star_penetration_rate", true},
+                                           {"far_pairs_50"},
+                                           {"far_pairs_40"},
+                                           {"voxel_volume", true},
+                                           {"voxel_volume_fine", true},
+                                           {"limmt"},
+                                           {"hand_acceleration"},
+                                           {"foot_acceleration"},
+                                           {"jerk"},
+                                           {"joint_shift_percent"},
+                                           {"contacts_kept", true},
+                                           {"contacts_lost", true}}};
 
 bool counts(PenetrationClass kind) { return kind >= SC_CLASS_PENETRATION; }
 
@@ -107,35 +136,18 @@ Track part_of(const Track& joints, const std::vector<std::size_t>& which) {
 
 }  // namespace
 
-bool is_share(const std::string& metric) {
-  return metric == "fault_frames" || metric == "deeper_than_1cm" || metric == "star_penetration_rate" ||
-         metric.starts_with("voxel_volume") || metric.starts_with("contacts_");
+const std::vector<std::string>& metric_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> out;
+    for (const Metric& metric : kMetrics) out.emplace_back(metric.name);
+    return out;
+  }();
+  return names;
 }
 
-const std::vector<std::string>& metric_names() {
-  static const std::vector<std::string> names{"fault_frames",
-                                              "depth_percent_p50",
-                                              "depth_percent_p95",
-                                              "depth_percent_max",
-                                              "deeper_than_1cm",
-                                              "swallowed_area_percent",
-                                              "volume_percent",
-                                              "intersecting_faces",
-                                              "inside_seconds",
-                                              "events_per_minute",
-                                              "star_penetration_rate",
-                                              "far_pairs_50",
-                                              "far_pairs_40",
-                                              "voxel_volume",
-                                              "voxel_volume_fine",
-                                              "limmt",
-                                              "hand_acceleration",
-                                              "foot_acceleration",
-                                              "jerk",
-                                              "joint_shift_percent",
-                                              "contacts_kept",
-                                              "contacts_lost"};
-  return names;
+bool is_share(const std::string& name) {
+  return std::any_of(kMetrics.begin(), kMetrics.end(),
+                     [&](const Metric& metric) { return metric.is_share && metric.name == name; });
 }
 
 ClipScorer::ClipScorer(const AnimatedAsset& animated, std::set<std::string> asked)
@@ -151,9 +163,29 @@ ClipScorer::ClipScorer(const AnimatedAsset& animated, std::set<std::string> aske
   if (is_asked("far_pairs_50") || is_asked("far_pairs_40")) far_.emplace(subject_.skin);
 }
 
+void ClipScorer::add_places(int frame, const Deformation& deformation, const std::vector<Vec3>* positions,
+                            ClipPlaces& to) const {
+  to.joints.emplace_back();
+  for (std::size_t bone = 0; bone < subject_.joints.joint_of_bone().size(); ++bone)
+    to.joints.back().push_back(subject_.joints.place_of(deformation, bone));
+  if (frame % kStep == 0 && positions != nullptr && subject_.has_limbs)
+    to.end_near.push_back(near_ends(ends_from_body(subject_.skin, *positions), subject_.height));
+}
+
+ClipPlaces ClipScorer::places(const ClipFrames& clip) const {
+  ClipPlaces out;
+  for (int f = 0; f < clip.count; ++f) {
+    const Deformation deformation = animated_.deformation(clip.first + f);
+    const std::vector<Vec3> positions = f % kStep == 0 ? animated_.positions(deformation) : std::vector<Vec3>();
+    add_places(f, deformation, &positions, out);
+  }
+  return out;
+}
+
 ClipScore ClipScorer::score(const ClipFrames& clip, const ClipPlaces* reference,
                             const std::function<void(int)>& progress) {
-  ClipScore out{clip.name, clip.own_count, clip.fps, {}, {}};
+  ClipScore out{clip.name, clip.own_count, clip.fps, {}};
+  ClipPlaces here;
   const double height = subject_.height, metre = 1000 / subject_.mm;
   const Vec3 up = subject_.frame.up, left = subject_.frame.left, forward = subject_.frame.forward;
   double ground = HUGE_VAL;
@@ -161,21 +193,16 @@ ClipScore ClipScorer::score(const ClipFrames& clip, const ClipPlaces* reference,
     for (const Index v : t) ground = std::min(ground, up.dot(subject_.skin.rest[v]));
   }
   const bool wants_star = is_asked("star_penetration_rate") && subject_.has_limbs,
-             wants_near = reference != nullptr || is_asked("contacts_kept") || is_asked("contacts_lost"),
              wants_coarse = is_asked("voxel_volume"), wants_fine = is_asked("voxel_volume_fine"),
              wants_limmt = is_asked("limmt");
   const Deformation at_rest;
-  std::vector<double> foot_rest;
   Sums sums;
   std::vector<LimmtFrame> limmt;
-  std::vector<std::vector<std::size_t>> contact_counts;
   const ClipEvents found = finder_.find(clip, [&](int f, const Deformation& deformation) {
     progress(f);
     const SkinPose pose(animated_, deformation);
     const std::vector<Vec3> positions = animated_.positions(deformation);
-    out.places.joints.emplace_back();
-    for (std::size_t bone = 0; bone < subject_.joints.joint_of_bone().size(); ++bone)
-      out.places.joints.back().push_back(subject_.joints.place_of(deformation, bone));
+    add_places(f, deformation, reference == nullptr ? nullptr : &positions, here);
     player_.set_pose(pose.pose());
     const Span<const TriangleContact> listed = player_.triangles();
     const std::vector<TriangleContact> contacts(listed.begin(), listed.end());
@@ -193,8 +220,6 @@ ClipScore ClipScorer::score(const ClipFrames& clip, const ClipPlaces* reference,
       sums.star.vertices += star.vertices;
       sums.star.inside += star.inside;
     }
-    if (f % kStep == 0 && wants_near && subject_.has_limbs)
-      out.places.end_near.push_back(near_ends(ends_from_body(subject_.skin, positions), height));
     if (!wants_limmt) return;
     LimmtFrame now{subject_.joints.joints_of(deformation), {}, {}, {}, 0, 0};
     for (const std::size_t foot : subject_.ends[1]) {
@@ -202,7 +227,7 @@ ClipScore ClipScorer::score(const ClipFrames& clip, const ClipPlaces* reference,
       now.foot_heights.push_back(up.dot(place - rest) / metre);
       now.feet.push_back({left.dot(place) / metre, forward.dot(place) / metre});
     }
-    const Vec3 root = out.places.joints.back().empty() ? Vec3(Vec3::Zero()) : out.places.joints.back().front();
+    const Vec3 root = here.joints.back().empty() ? Vec3(Vec3::Zero()) : here.joints.back().front();
     now.root = {root.x() / metre, root.y() / metre, root.z() / metre};
     double lowest = HUGE_VAL;
     for (const Triangle& t : subject_.skin.triangles) lowest = std::min(lowest, up.dot(positions[t[0]]));
@@ -247,14 +272,13 @@ ClipScore ClipScorer::score(const ClipFrames& clip, const ClipPlaces* reference,
   const double seconds = static_cast<double>(frames) / clip.fps;
   const auto ends = [&](std::size_t k, int order) -> std::optional<double> {
     if (subject_.ends[k].empty() || clip.count <= order) return {};
-    return mean_difference(part_of(out.places.joints, subject_.ends[k]), order, clip.fps) / metre;
+    return mean_difference(part_of(here.joints, subject_.ends[k]), order, clip.fps) / metre;
   };
-  if (reference != nullptr && !reference->joints.empty() &&
-      std::abs(static_cast<int>(reference->joints.size()) - clip.count) > 1) {
+  if (reference != nullptr && std::abs(static_cast<int>(reference->joints.size()) - clip.count) > 1) {
     reference = nullptr;  // it is of another motion
   }
-  const std::optional<double> kept = reference == nullptr ? std::nullopt : kept_share(out.places, *reference);
-  const std::vector<std::optional<double>> values{
+  const std::optional<double> kept = reference == nullptr ? std::nullopt : kept_share(here, *reference);
+  const std::array<std::optional<double>, kMetrics.size()> values{
       share(contacts.depths, 0),
       quantile(deep, 0.5),
       quantile(deep, 0.95),
@@ -276,11 +300,12 @@ ClipScore ClipScorer::score(const ClipFrames& clip, const ClipPlaces* reference,
       ends(0, 3),
       reference == nullptr
           ? std::nullopt
-          : std::optional(100 * mean_distance(from_root(out.places.joints), from_root(reference->joints)) / height),
+          : std::optional(100 * mean_distance(from_root(here.joints), from_root(reference->joints)) / height),
       kept,
       kept ? std::optional(1 - *kept) : std::nullopt};
   for (std::size_t m = 0; m < values.size(); ++m) {
-    if (is_asked(metric_names()[m])) out.metrics.emplace_back(metric_names()[m], values[m]);
+    const std::string name(kMetrics[m].name);
+    if (is_asked(name)) out.metrics.emplace_back(name, values[m]);
   }
   return out;
 }

@@ -24,21 +24,20 @@ using Metrics = std::vector<std::pair<std::string, std::optional<double>>>;
 // All names, as docs/cli/score.md explains them.
 const std::vector<std::string>& metric_names();
 
+// A metric whose values are from 0 to 1.
+bool is_share(const std::string& name);
+
 // The places that are compared with those of another clip.
 struct ClipPlaces {
   Track joints;                             // by frame
   std::vector<std::vector<char>> end_near;  // by looked-at frame: of each limb 1 if its end is near the body
 };
 
-// A metric whose values are from 0 to 1.
-bool is_share(const std::string& metric);
-
 struct ClipScore {
   std::string clip;
   int frames = 0;
   double fps = 0;
   Metrics metrics;
-  ClipPlaces places;
 };
 
 // Scores the clips of one character, one after another.
@@ -47,10 +46,15 @@ class ClipScorer {
   // `animated` must outlive it, and may play other motions in between. `asked`: the metrics to measure; empty: all.
   ClipScorer(const AnimatedAsset& animated, std::set<std::string> asked);
 
-  // One of animated.clips(). `progress` is called with each frame's number. `reference`: of the clip to compare with.
+  // One of animated.clips(). `progress` is called with each frame's number. `reference`: of the clip to compare with,
+  // or null.
   ClipScore score(const ClipFrames& clip, const ClipPlaces* reference, const std::function<void(int)>& progress);
+  // The same clip as a reference.
+  ClipPlaces places(const ClipFrames& clip) const;
 
  private:
+  // Adds those of a frame. Nearness is left out where `positions` is null.
+  void add_places(int frame, const Deformation& deformation, const std::vector<Vec3>* positions, ClipPlaces& to) const;
   bool is_asked(const std::string& metric) const { return asked_.empty() || asked_.contains(metric); }
 
   const AnimatedAsset& animated_;

@@ -24,8 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const ClipPlaces kNone;  // with a reference all places are looked at
-
 // A clip of a character: a recording, or with an empty file one of its own.
 struct Unit {
   std::string name;
@@ -50,11 +48,12 @@ struct Worker {
   bool plays_own = false;
 };
 
-// Files of motion alone: others are characters, whose own clips count.
-bool is_recording_file(const fs::path& file) {
+// A character, whose own clips count, has a mesh. Files of motion alone are told by their endings; an .npz is either.
+bool is_character(const fs::path& file) {
   std::string ending = file.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  return ending == ".bvh" || ending == ".npz" || ending == ".npy" || ending == ".pkl" || ending == ".csv";
+  if (ending == ".bvh" || ending == ".npy" || ending == ".pkl" || ending == ".csv") return false;
+  return ending != ".npz" || !read_source(file).triangles.empty();
 }
 
 std::string bake_asset(const LibraryCharacter& character, const std::function<void(const std::string&)>& progress) {
@@ -93,7 +92,6 @@ class CharacterRun {
       rows[u].score.clip = units[u].name;
       try {
         rows[u].score = score(workers[thread], units[u], references.find(units[u].name));
-        rows[u].score.places = {};
       } catch (const Interrupted&) {
         throw;
       } catch (const Error& error) {
@@ -130,24 +128,32 @@ class CharacterRun {
     return out;
   }
 
-  ClipScore score(std::optional<Worker>& worker, const Unit& unit, const ClipPlaces* reference) {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      if (!worker) worker.emplace(asset_, character_, job_);
-      if (!unit.recording.empty()) {
-        worker->animated.play({{}, {}, unit.recording.string()}, {0, job_.fps});
-        worker->plays_own = false;
-      } else if (!worker->plays_own) {
-        worker->animated.play({}, {0, job_.fps});
-        worker->plays_own = true;
-      }
+  // Plays a clip, and returns it.
+  const ClipFrames& play(std::optional<Worker>& worker, const Unit& unit) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!worker) worker.emplace(asset_, character_, job_);
+    if (!unit.recording.empty()) {
+      worker->animated.play({{}, {}, unit.recording.string()}, {0, job_.fps});
+      worker->plays_own = false;
+    } else if (!worker->plays_own) {
+      worker->animated.play({}, {0, job_.fps});
+      worker->plays_own = true;
     }
-    const ClipFrames& clip = worker->animated.clips()[unit.recording.empty() ? unit.number : 0];
+    return worker->animated.clips()[unit.recording.empty() ? unit.number : 0];
+  }
+
+  ClipScore score(std::optional<Worker>& worker, const Unit& unit, const ClipPlaces* reference) {
+    const ClipFrames& clip = play(worker, unit);
     ClipScore out = worker->scorer.score(clip, reference, [&](int frame) {
       if (frame % 100 == 0) tell(fmt::format("{}, frame {} of {}", unit.name, frame, clip.count));
     });
     out.clip = unit.name;
     return out;
+  }
+
+  ClipPlaces places(std::optional<Worker>& worker, const Unit& unit) {
+    const ClipFrames& clip = play(worker, unit);
+    return worker->scorer.places(clip);
   }
 
   References find_references(std::optional<Worker>& worker, const std::vector<Unit>& units) {
@@ -158,20 +164,19 @@ class CharacterRun {
     const auto named =
         std::find_if(units.begin(), units.end(), [&](const Unit& unit) { return unit.name == job_.reference; });
     if (named != units.end()) {
-      out.of_all = score(worker, *named, &kNone).places;
+      out.of_all = places(worker, *named);
     } else if (fs::is_directory(file)) {
       for (const Unit& unit : units) {
         const fs::path recording = file / unit.recording.filename();
-        if (fs::is_regular_file(recording))
-          out.by_name[unit.name] = score(worker, {unit.name, recording, 0}, &kNone).places;
+        if (fs::is_regular_file(recording)) out.by_name[unit.name] = places(worker, {unit.name, recording, 0});
       }
     } else if (!fs::exists(file)) {
       throw Error(ExitCode::kFile,
                   "--reference: " + job_.reference + ": is no clip of " + character_.name + ", and no file");
-    } else if (is_recording_file(file)) {
-      out.of_all = score(worker, {file.stem().string(), file, 0}, &kNone).places;
-    } else {
+    } else if (is_character(file)) {
       out = clips_of(file);
+    } else {
+      out.of_all = places(worker, {file.stem().string(), file, 0});
     }
     return out;
   }
@@ -186,7 +191,7 @@ class CharacterRun {
     References out;
     const std::vector<std::string> names = unique_clip_names(worker.animated.character().rig);
     for (std::size_t c = 0; c < names.size(); ++c)
-      out.by_name[names[c]] = worker.scorer.score(worker.animated.clips()[c], &kNone, [](int) {}).places;
+      out.by_name[names[c]] = worker.scorer.places(worker.animated.clips()[c]);
     if (names.size() == 1) out.of_all = out.by_name.begin()->second;
     return out;
   }
