@@ -48,7 +48,7 @@ struct Worker {
   bool plays_own = false;
 };
 
-// A character, whose own clips count, has a mesh. Files of motion alone are told by their endings; an .npz is either.
+// A character, whose own clips count, has a mesh. Endings say which files hold motion alone; an .npz holds either.
 bool is_character(const fs::path& file) {
   std::string ending = file.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });

@@ -2,6 +2,7 @@
 // `spherechain fix --motion`: a recording, mended on a character and in its own file. And what may be left alone.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -167,6 +168,9 @@ TEST_CASE("fix: a character without bones is mended on its automatic rig, which 
   const Character before = import_character(human), after = import_character(folder.path / "out.glb");
   CHECK(after.source_triangles == before.source_triangles);
   CHECK(after.rig.bones.size() == 19);
+  const auto blended = std::count_if(after.rig.weights.begin(), after.rig.weights.end(),
+                                     [](const VertexWeights& weights) { return weights.weight[1] > 0.1; });
+  CHECK(blended > 1000);  // the skin bends
   REQUIRE(after.rig.clips.size() == 1);
   const Eigen::AlignedBox3d was = bounds_of(before.source_positions), is = bounds_of(after.source_positions);
   CHECK(is.diagonal().norm() == doctest::Approx(before.metres_per_unit * was.diagonal().norm()));
