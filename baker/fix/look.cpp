@@ -112,6 +112,14 @@ Look look_in_round(MendState& state, int round, bool is_first) {
   return out;
 }
 
+Look look_everywhere(MendState& state) {
+  Look out;
+  out.found = state.finder.in_frames(all_frames(state.facts.clip), state.turns);
+  append(state.finder.between(marked_frames(state.in_window), state.turns), out.found);
+  out.residual = add_separations(state, out.found);
+  return out;
+}
+
 bool has_deep_contacts(const MendState& state, const std::vector<PosePenetration>& found) {
   return std::any_of(found.begin(), found.end(), [&](const PosePenetration& penetration) {
     const double depth_mm = state.facts.mm * double{penetration.found.measures.depth};

@@ -29,6 +29,8 @@ constexpr int kRoundsMax = 24;                // within a budget
 constexpr double kFirstBudget = 25;           // degrees
 constexpr int kFreeRoundsMax = 4;             // rounds without faults in which joints return as far as they can
 constexpr double kStillStep = to_radians(1);  // a round with smaller steps may be the last
+constexpr int kSettleRounds = 3;              // after smoothing
+constexpr int kSettleWeight = 3;              // they weigh separations as this round
 
 // Separates body parts round by round, until all are apart and the joints are at rest, or nothing gets better any more.
 // Returns the number of the next round.
@@ -66,6 +68,17 @@ int separate_within_budgets(MendState& state) {
   return rounds;
 }
 
+// Smoothing moves parts into each other again. A few more rounds part them, and smoothing has less to do.
+void settle(MendState& state) {
+  for (int round = 0; round < kSettleRounds; ++round) {
+    const Look look = look_everywhere(state);
+    state.report(fmt::format("settling: {:.1f} mm too deep", look.residual * state.facts.mm));
+    if (look.residual == 0) return;
+    gauss_newton_step(state, kSettleWeight, false);
+  }
+  calm_turns(state.facts.clip, state.facts.height, state.facts.loops, state.turns);
+}
+
 std::set<int> turned_frames(const MendState& state) {
   std::set<int> out;
   for (std::size_t i = 0; i < state.turns.size(); ++i) {
@@ -84,6 +97,8 @@ Mend mend_clip(const ClipFacts& facts, const std::function<bool(const Event&)>& 
   calm_turns(facts.clip, facts.height, facts.loops, state.turns);
   state.in_window = windows_around(turned_frames(state), facts.clip, facts.loops);
   state.finder.leave_out({});  // corrections must not add faults of pairs that were harmless
+  settle(state);
+  state.in_window = windows_around(turned_frames(state), facts.clip, facts.loops);
   take_back_turns(state);
   const std::vector<PosePenetration> after = look_as_check(state);
   state.finder.leave_out(state.goals.harmless());

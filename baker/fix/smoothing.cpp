@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "baker/fix/step_limit.h"
 #include "baker/fix/time_windows.h"
 
 namespace spherechain::baker {
@@ -13,9 +14,6 @@ namespace {
 constexpr double kShaky = 1.5;        // ratio of the jerk to that of the source clip
 constexpr double kCalm = 5;           // heights per second^3: an invisible jerk
 constexpr double kMovedAtAll = 2e-3;  // heights
-constexpr double kStepMost = 0.009;   // heights that a joint's end goes further in a frame than before
-constexpr double kStepShare = 0.15;   // of its own step: where the clip is fast or cut, more is not seen
-constexpr double kTip = 0.06;         // heights from a wrist to the middle of its hand
 constexpr double kSpread = 0.02;      // radians a frame: the slope of turns that are spread
 constexpr int kSmoothings = 8;        // with a Gaussian of 1, 1.5, 2, ... frames
 constexpr int kFadeSteps = 10;        // to this share each, then to nothing
@@ -83,19 +81,6 @@ void smooth(const TurnedClip& clip, Index joint, const std::vector<double>& shar
   }
 }
 
-// A point in the joint's axes: its own place, or where no turning joint is below, further out.
-Vec3 tip_of(const TurnedClip& clip, const std::vector<Affine>& axes, Index joint, double height) {
-  const std::vector<Index> all = clip.above_joint(joint);
-  for (Index j = 0; j < clip.count(); ++j) {
-    const std::vector<Index> above = clip.above_joint(j);
-    if (j != joint && std::find(above.begin(), above.end(), joint) != above.end()) return Vec3::Zero();
-  }
-  if (all.size() < 2) return Vec3::Zero();
-  const Vec3 out = axes[joint].translation() - axes[all[1]].translation();
-  if (out.norm() == 0) return Vec3::Zero();
-  return axes[joint].linear().inverse() * (kTip * height / out.norm() * out);
-}
-
 }  // namespace
 
 void fade_out(const TurnedClip& clip, Index joint, const std::vector<char>& marked, double seconds, double least,
@@ -106,24 +91,18 @@ void fade_out(const TurnedClip& clip, Index joint, const std::vector<char>& mark
 
 MarkedTurns shaking_turns(const TurnedClip& clip, const Turns& turns, double height) {
   const auto frames = static_cast<std::size_t>(clip.frames());
-  const Turns none(turns.size(), Vec3::Zero());
-  std::array<std::vector<std::vector<Affine>>, 2> axes;  // before and after, by frame
-  for (int f = 0; f < clip.frames(); ++f) {
-    axes[0].push_back(clip.pose(f, none).axes);
-    axes[1].push_back(clip.pose(f, turns).axes);
-  }
+  const EndSteps steps(clip, turns, height);
   const auto pad = static_cast<std::size_t>(std::ceil(kWindowPad * clip.fps()));
   MarkedTurns out;
-  for (Index j = 0; j < clip.count(); ++j) {
-    const Vec3 tip = tip_of(clip, axes[0][0], j, height);
-    const auto at = [&](std::size_t k, std::size_t f) { return Vec3(axes[k][f][j] * tip); };
+  for (std::size_t e = 0; e < steps.ends().size(); ++e) {
+    const auto at = [&](std::size_t k, std::size_t f) {
+      return k == 0 ? steps.before(e, static_cast<int>(f)) : steps.after(e, static_cast<int>(f));
+    };
     std::vector<std::array<double, 3>> jerks(frames, {0, 0, 0});  // before, after, and what is not seen
     std::vector<char> marked(frames, 0);
     for (std::size_t f = 1; f < frames; ++f) {
       const Vec3 moved = at(1, f) - at(0, f);
-      const Vec3 own = at(0, f) - at(0, f - 1), now = at(1, f) - at(1, f - 1);
-      const double most = std::max(kStepMost * height, kStepShare * own.norm());
-      if (now.norm() - own.norm() > most) marked[f] = marked[f - 1] = 1;
+      if (steps.extra(e, static_cast<int>(f)) > EndSteps::kStepMax) marked[f] = marked[f - 1] = 1;
       if (f < 3 || moved.norm() < kMovedAtAll * height) continue;
       for (std::size_t k = 0; k < 2; ++k) {
         jerks[f][k] = (at(k, f) - 3 * at(k, f - 1) + 3 * at(k, f - 2) - at(k, f - 3)).norm();
@@ -138,7 +117,7 @@ MarkedTurns shaking_turns(const TurnedClip& clip, const Turns& turns, double hei
       if (sums[1] > kShaky * sums[0] + sums[2]) marked[f] = 1;
     }
     if (std::find(marked.begin(), marked.end(), 1) == marked.end()) continue;
-    for (const Index above : clip.above_joint(j)) {
+    for (const Index above : clip.above_joint(steps.ends()[e].joint)) {
       std::vector<char>& all = out.try_emplace(above, frames, 0).first->second;
       for (std::size_t f = 0; f < frames; ++f) all[f] = static_cast<char>(all[f] | marked[f]);
     }

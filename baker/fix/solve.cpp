@@ -11,7 +11,7 @@ namespace spherechain::baker {
 namespace {
 
 constexpr double kSteadyTime = 0.1;  // seconds: faster changes are expensive
-constexpr int kTrials = 4;           // to find out which constraints are above their target
+constexpr int kTrials = 10;          // to find out which constraints are above their target
 
 using Matrix = Eigen::SparseMatrix<double>;
 

@@ -10,18 +10,19 @@
 #include "baker/events/join_events.h"
 #include "baker/fix/look.h"
 #include "baker/fix/smoothing.h"
+#include "baker/fix/step_limit.h"
 #include "baker/fix/time_windows.h"
 
 namespace spherechain::baker {
 namespace {
 
-constexpr int kHalfTries = 2;  // tries to halve the turns that made something worse; later ones take them away
-constexpr int kTries = 10;     // in all, in ever wider windows
+constexpr int kHalfTries = 2;    // tries to halve the turns that made something worse; later ones take them away
+constexpr int kNarrowTries = 5;  // tries that fade as fast as the step limit allows
+constexpr int kTries = 10;       // in all, in ever wider windows
 constexpr double kFootMoves = 1e-3, kFootTurns = 5e-3;  // heights; a share of the axes' size
 constexpr double kWorth = 3;                            // times the depth that is added: so much less is worth it
-constexpr double kLargeTurn = to_radians(25);
-constexpr double kFadeSeconds = 0.5;  // a faster fade is a step
-constexpr double kWidest = 3;         // times that
+constexpr double kFadeSeconds = 0.3;
+constexpr double kWidest = 3;  // times that, or the time in which ends may return
 
 // Sums of the fault depths of parts that are moved, by frame.
 struct Depths {
@@ -110,6 +111,19 @@ void add_moved_feet(const MendState& state, MarkedTurns& failed) {
   }
 }
 
+// Turns fail if they make an end go further in a frame than it may.
+void add_long_steps(const MendState& state, const EndSteps& steps, MarkedTurns& failed) {
+  for (int f = 1; f < state.facts.clip.frames(); ++f) {
+    for (std::size_t e = 0; e < steps.ends().size(); ++e) {
+      if (steps.extra(e, f) <= EndSteps::kStepMax) continue;
+      for (const Index joint : state.facts.clip.above_joint(steps.ends()[e].joint)) {
+        mark(failed, joint, static_cast<std::size_t>(f) - 1, state.in_window.size());
+        mark(failed, joint, static_cast<std::size_t>(f), state.in_window.size());
+      }
+    }
+  }
+}
+
 // Removes failed turns from the whole run of frames.
 void remove_all(MendState& state, const MarkedTurns& failed) {
   const std::vector<std::vector<std::size_t>> runs = contiguous_runs(state.in_window, state.facts.loops);
@@ -121,12 +135,18 @@ void remove_all(MendState& state, const MarkedTurns& failed) {
   }
 }
 
-double largest_turn(const MendState& state, Index joint, const std::vector<char>& frames) {
-  double most = 0;
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    if (frames[f] != 0) most = std::max(most, state.turns[f * state.facts.clip.count() + joint].norm());
+// Seconds in which the ends that a joint moves can return to the source clip from where they are near the marked
+// frames.
+double seconds_to_return(const MendState& state, const EndSteps& steps, Index joint, const std::vector<char>& marked) {
+  constexpr double kSteepest = 1.5;  // of a smooth fade, times its mean slope
+  double farthest = 0;
+  const int reach = static_cast<int>(kWidest * kFadeSeconds * state.facts.clip.fps());
+  for (const int f : marked_frames(marked)) {
+    for (int g = std::max(0, f - reach); g <= std::min(f + reach, state.facts.clip.frames() - 1); ++g) {
+      farthest = std::max(farthest, steps.moved(joint, g));
+    }
   }
-  return most;
+  return kSteepest * farthest / (EndSteps::kStepTarget * state.facts.clip.fps());
 }
 
 void take_back_failed_turns(MendState& state) {
@@ -135,15 +155,17 @@ void take_back_failed_turns(MendState& state) {
     MarkedTurns failed;
     add_worse(state, found, failed);
     add_moved_feet(state, failed);
+    const EndSteps steps(state.facts.clip, state.turns, state.facts.height);
+    if (attempt > kHalfTries) add_long_steps(state, steps, failed);
     if (attempt > kHalfTries && attempt < kTries) add_vain(state, found, failed);
     if (failed.empty() && attempt > kHalfTries) return;
     if (attempt == kTries) return remove_all(state, failed);
     state.report(fmt::format("taking back what makes it worse, {} of {}", attempt, kTries));
-    const double seconds = kFadeSeconds * std::pow(kWidest, attempt / double{kTries});
+    const double wider = std::pow(kWidest, std::max(0, attempt - kNarrowTries) / double{kTries - kNarrowTries}),
+                 least = attempt <= kHalfTries ? 0.5 : 0;
     for (const auto& [joint, frames] : failed) {
-      const double share = std::clamp(largest_turn(state, joint, frames) / kLargeTurn, 0.3, 1.0);
-      fade_out(state.facts.clip, joint, frames, share * seconds, attempt <= kHalfTries ? 0.5 : 0, state.facts.loops,
-               state.turns);
+      const double seconds = std::max(kFadeSeconds, (1 - least) * seconds_to_return(state, steps, joint, frames));
+      fade_out(state.facts.clip, joint, frames, wider * seconds, least, state.facts.loops, state.turns);
     }
   }
 }
