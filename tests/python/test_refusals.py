@@ -140,12 +140,12 @@ class Refusals(unittest.TestCase):
             self.refuses(ValueError, "pose.bones", function, rest_pose(paper))
 
     def test_the_module_itself_reads_nothing_out_of_bounds(self):
-        native = _native.Model(DOLL.read_bytes())
-        radius = _native.Radius.detect
+        native = _native.Model(DOLL.read_bytes(), None)
+        radius = _native.RADII["detect"]
         short = np.zeros((2, len(self.model.bones) - 1, 3, 4), np.float32)
         overlapping = np.lib.stride_tricks.as_strided(self.rest, (1, *self.rest.shape), (0, 4, 16, 4))
         for bones in (short, overlapping, self.rest):
-            self.refuses((ValueError, TypeError), "bones|incompatible", native.spheres, bones, radius, 1)
+            self.refuses((ValueError, TypeError), "bones|array of", native.spheres, bones, radius, 1)
         slopes = np.zeros((1, self.model.sphere_count, 4), np.float32)
         self.refuses(ValueError, "gradient", native.spheres_vjp, self.rest[None], slopes[:, 1:], radius, 1)
         self.refuses(ValueError, "spheres", native.pairs, slopes[:, 1:], radius, 1)
