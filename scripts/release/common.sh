@@ -21,9 +21,10 @@ skip() {
   exit 77
 }
 
-# Completes build/release as far as the packages with the tool need it.
+# Completes build/release as far as the packages with the tool need it. The page of `view` holds the JavaScript package.
 build_tool() {
-  cmake --preset release >/dev/null
-  cmake --build --preset release --target spherechain spherechain_runtime viewer >/dev/null
+  needs emcc emscripten
+  cmake --preset release -D SPHERECHAIN_JAVASCRIPT=ON >/dev/null
+  cmake --build --preset release --target spherechain spherechain_runtime javascript viewer >/dev/null
   [[ -e build/release/share/spherechain/viewer.html ]] || { echo "build/release has no page of view: the tool's packages would lack it" >&2; exit 1; }
 }

@@ -25,7 +25,7 @@ package = build_wheel.compile_package(Path("build/wheel").absolute())
 tag = max(check_wheel.lowest_tag(folder) for folder in (stage / "files", package))
 for old in Path(out).glob("spherechain-*.whl"):
     old.unlink()
-name = build_wheel.pack(out, package, tag, stage / "files", stage / "licences", components.expression(stage / "files"))
+name = build_wheel.pack(out, package, tag, stage / "files", stage / "licences", components.expression(components.libraries_in(stage / "files"), components.compiled_in("baker/", "runtime/")))
 print(Path(out, name))
 END
 python3 scripts/release/check_wheel.py "$1"/spherechain-*.whl
