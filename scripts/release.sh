@@ -17,8 +17,10 @@ for argument in "$@"; do
     --no-trials) trials= ;;
     --twice) twice=1 ;;
     -*) echo "release: $argument is no option: [--dirty] [--no-trials] [--twice] OUT" >&2; exit 2 ;;
-    *) [[ -z $out ]] || { echo "release: pass one folder" >&2; exit 2; }
-       out=$(realpath -m "$caller/$argument" 2>/dev/null); [[ $argument != /* ]] || out=$(realpath -m "$argument") ;;
+    *)
+      [[ -z $out ]] || { echo "release: pass one folder" >&2; exit 2; }
+      out=$(cd "$caller" && realpath -m "$argument")
+      ;;
   esac
 done
 [[ -n $out ]] || { echo "release: pass the folder for the packages" >&2; exit 2; }
@@ -35,11 +37,13 @@ mkdir -p "$stage" "$logs" "$out"
 declare -A made tried
 failed=
 
+files_in() { (cd "$1" && find . -type f -printf '%P\n' | sort); }
+
 # step NAME COMMAND...: runs a command with its output in a log, and prints a line. Sets `result`: done, "skipped: ..." or failed.
 step() {
   local name=$1 from=$SECONDS code=0
   shift
-  "$@" >"$logs/$name.log" 2>&1 || code=$?
+  "$@" >"$logs/$name.log" 2>&1 </dev/null || code=$?
   result=done
   if [[ $code -eq 77 ]]; then
     result=$(grep '^skipped: ' "$logs/$name.log" | tail -1)
@@ -53,14 +57,14 @@ step() {
 for builder in scripts/release/*.sh; do
   name=$(basename "$builder" .sh)
   [[ -x $builder ]] || continue  # those that others source
+  before=$(files_in "$stage")
   step "$name" "$builder" "$stage"
-  made[$name]=$(find "$stage" -type f -newer "$logs" -printf '%f\n' | sort)
-  touch "$logs"
-  sleep 0.01
+  tried[$name]=$result
+  made[$name]=$(comm -13 <(echo "$before") <(files_in "$stage"))
   if [[ $result == done && -n $twice ]]; then
     mkdir -p "$stage.2"
     step "$name, again" "$builder" "$stage.2"
-    for file in $(cd "$stage.2" && ls); do
+    for file in ${made[$name]}; do
       cmp "$stage/$file" "$stage.2/$file" || failed=1
     done
     rm -rf "$stage.2"
@@ -71,16 +75,18 @@ step bill python3 scripts/release/bill.py "$stage"
 # Files of an earlier run are those that its SHA256SUMS lists.
 if [[ -e $out/SHA256SUMS ]]; then
   (cd "$out" && sha256sum --check --quiet SHA256SUMS >/dev/null 2>&1) || { echo "release: $out: files differ from its SHA256SUMS, so they stay. The packages lie in $stage" >&2; exit 1; }
-  (cd "$out" && cut -c67- SHA256SUMS | xargs -d '\n' rm -f -- && rm SHA256SUMS)
+  (cd "$out" && cut -c 67- SHA256SUMS | xargs -d '\n' rm -f -- && rm SHA256SUMS)
 fi
-for file in $(cd "$stage" && ls); do
+for file in $(files_in "$stage"); do
   [[ ! -e $out/$file ]] || { echo "release: $out/$file is from elsewhere, so it stays. The packages lie in $stage" >&2; exit 1; }
 done
-cp "$stage"/* "$out/"
+cp -r "$stage"/. "$out/"
 
-for name in "${!made[@]}"; do
+names=$(printf '%s\n' "${!made[@]}" | sort)
+for name in $names; do
+  [[ -n ${made[$name]} ]] || continue
   tried[$name]="not tried"
-  if [[ -n $trials && -x scripts/release/try/$name.sh && -n ${made[$name]} ]]; then
+  if [[ -n $trials && -x scripts/release/try/$name.sh ]]; then
     step "try $name" "scripts/release/try/$name.sh" "$out"
     tried[$name]=${result/done/tried}
   fi
@@ -88,10 +94,11 @@ done
 
 echo
 printf '%-62s %10s  %s\n' package bytes trial
-for name in $(printf '%s\n' "${!made[@]}" | sort); do
+for name in $names; do
+  [[ -n ${made[$name]} ]] || printf '%-62s %10s  %s\n' "($name)" - "${tried[$name]}"
   for file in ${made[$name]}; do
     printf '%-62s %10d  %s\n' "$file" "$(stat -c %s "$out/$file")" "${tried[$name]}"
   done
 done
-echo "$out: $(ls "$out" | wc -l) files after $SECONDS s"
+echo "$out: $(files_in "$stage" | wc -l) files after $SECONDS s"
 [[ -z $failed ]]

@@ -18,7 +18,9 @@ export npm_config_cache=$try/cache npm_config_offline=true npm_config_audit=fals
 
 # The sample of the documentation, word for word.
 sed -n '/^import { readFileSync }/,/^```/p' docs/javascript.md | sed '/^```/,$d' >"$try/first.mjs"
-cd "$try"
+mkdir "$try/both" "$try/alone"
+mv "$try/first.mjs" "$try/both/"
+cd "$try/both"
 echo '{ "private": true }' >package.json
 npm install --silent "$library" "$tool"
 npx --no-install spherechain --version
@@ -27,9 +29,10 @@ node first.mjs | tee found
 grep -q ' mm' found
 if npx --no-install spherechain bake nothing.glb -o x.sphc 2>/dev/null; then exit 1; else [[ $? -eq 3 ]]; fi
 
-mkdir alone
-cd alone
+cd "$try/alone"
 echo '{ "private": true }' >package.json
 npm install --silent "$library"
 node --input-type=module -e "import { load } from 'spherechain'; await load(); console.log('the library alone: loads')"
-npx --no-install spherechain --version 2>&1 | grep -q 'the tool is not installed' && echo "the library alone: the command says what is missing"
+said=$(npx --no-install spherechain --version 2>&1 || true)
+[[ $said == *'the tool is not installed'* ]] || { echo "the command says: $said" >&2; exit 1; }
+echo "the library alone: the command says what is missing"
