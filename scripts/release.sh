@@ -56,7 +56,7 @@ step() {
 
 for builder in scripts/release/*.sh; do
   name=$(basename "$builder" .sh)
-  [[ -x $builder ]] || continue  # those that others source
+  [[ $name != *common ]] || continue  # sourced by the others
   before=$(files_in "$stage")
   step "$name" "$builder" "$stage"
   tried[$name]=$result
