@@ -56,6 +56,8 @@ def bundle(folder, library_folder):
     licences.mkdir(parents=True, exist_ok=True)
     for name in ("copyright", "LICENSE"):
         shutil.copy(ROOT / "baker" / name, licences / name)
+    for name in ("Apache-2.0", "LGPL-3", "MPL-2.0"):  # the copyright files refer to these texts on Debian
+        shutil.copy(f"/usr/share/common-licenses/{name}", licences / name)
     for name, path in libraries(program).items():
         place(path.resolve(), library_folder / name, library_folder)
         package = package_of(path)
