@@ -381,7 +381,7 @@ auto guarded(const Run& run) -> decltype(run()) {
   return {};
 }
 
-// What a call holds for a parameter of type A while it runs.
+// The type that a call holds for a parameter of type A while it runs: a value for a reference to const.
 template <typename A>
 using Held = std::conditional_t<std::is_lvalue_reference_v<A> && std::is_class_v<std::remove_reference_t<A>>,
                                 std::remove_const_t<std::remove_reference_t<A>>, A>;

@@ -195,7 +195,7 @@ void check_rest(const LoadedModel& model, const Array<float>& bones) {
   }
 }
 
-// Of the class itself.
+// A static method of the class Model.
 PyObject* get_default_rule(PyObject*, PyObject*) {
   return guarded([] {
     const std::vector<float> rule = default_rule();
