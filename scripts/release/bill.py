@@ -60,9 +60,10 @@ def content(path):
                     expected = components.owners([Path("/usr/lib/x86_64-linux-gnu", library) for library in Elf(file).needed
                                                   if library not in carried])
             inside = {name: version for name, version in inside.items() if name not in expected}
-        pages = components.of_pages() if any(file.name == "viewer.html" for file in files) else []
+        pages = components.in_pages(file for file in files if file.suffix == ".html")
         is_gpl = has_tool or "blender" in path.name
-        return "GPL-3.0-or-later" if is_gpl else "MIT", inside, expected, pages
+        licence = "MIT AND GPL-3.0-or-later" if path.suffix == ".whl" else "GPL-3.0-or-later" if is_gpl else "MIT"
+        return licence, inside, expected, pages
 
 
 class Document:
