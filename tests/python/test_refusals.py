@@ -149,6 +149,9 @@ class Refusals(unittest.TestCase):
         slopes = np.zeros((1, self.model.sphere_count, 4), np.float32)
         self.refuses(ValueError, "gradient", native.spheres_vjp, self.rest[None], slopes[:, 1:], radius, 1)
         self.refuses(ValueError, "spheres", native.pairs, slopes[:, 1:], radius, 1)
+        unaligned = np.zeros(slopes.nbytes + 1, np.uint8)[1:].view(np.float32).reshape(slopes.shape)
+        for wrong in (slopes.astype(np.float64), slopes.astype(np.int32), slopes.astype(">f4"), unaligned, slopes.tolist()):
+            self.refuses(TypeError, "array of", native.pairs, wrong, radius, 1)
         query = self.model._query({}, None, None)
 
         def ask(question, poses, before=None, other=None, other_poses=None, **options):

@@ -136,8 +136,11 @@ class Array {
     object_ = Object::borrow(object);
   }
   explicit Array(std::initializer_list<std::size_t> shape) {
-    static PyObject* const empty =
-        Object::own(PyObject_GetAttrString(Object::own(PyImport_ImportModule("numpy")).get(), "empty")).release();
+    // No guard of C++ around it: a thread that waits there would hold the GIL, which the import may need.
+    static PyObject* empty = nullptr;
+    if (empty == nullptr) {
+      empty = Object::own(PyObject_GetAttrString(Object::own(PyImport_ImportModule("numpy")).get(), "empty")).release();
+    }
     const Object sizes = Object::own(PyTuple_New(static_cast<Py_ssize_t>(shape.size())));
     Py_ssize_t axis = 0;
     for (const std::size_t size : shape) {
