@@ -1,8 +1,6 @@
-# Packages by CPack. `scripts/package.sh` makes them all; of one build, `cpack -G DEB|TGZ|ZIP` makes what it has:
+# Debian's packages by CPack; scripts/release/linux.sh makes them all. Of one build, `cpack -G DEB` makes what it has:
 #   a shared build without the baker and CUDA: libspherechain (runtime) and libspherechain-dev (dev), MIT
 #   a build with the baker: spherechain (tools), GPL-3.0-or-later
-#   -G TGZ: the sdk, static or shared as the build is, and the tools where they are built
-#   -G ZIP: the sdk with its samples, for Windows
 set(CPACK_PACKAGE_NAME spherechain)
 set(CPACK_PACKAGE_VENDOR "the spherechain authors")
 set(SPHERECHAIN_PACKAGE_CONTACT "the spherechain authors <authors@spherechain.invalid>" CACHE STRING "Maintainer of the packages")
@@ -13,12 +11,6 @@ set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
-set(CPACK_ARCHIVE_COMPONENT_INSTALL ON)
-set(platform ${CMAKE_SYSTEM_NAME}-${CMAKE_SYSTEM_PROCESSOR})
-set(CPACK_PACKAGE_FILE_NAME spherechain-${PROJECT_VERSION}-${platform})
-set(CPACK_ARCHIVE_SDK_FILE_NAME spherechain-sdk-${PROJECT_VERSION}-${platform})
-set(CPACK_ARCHIVE_TOOLS_FILE_NAME spherechain-${PROJECT_VERSION}-${platform})
-
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
@@ -34,28 +26,11 @@ set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME spherechain)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION graphics)
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "The tool: bakes characters, checks and mends their clips. GPL-3.0-or-later.")
 
-# Which components a generator packs, as a file that cpack reads once it knows its generator.
-set(archives sdk)
-set(debs)
+set(CPACK_COMPONENTS_ALL)
 if(BUILD_SHARED_LIBS AND NOT SPHERECHAIN_CUDA_FOUND)
-  list(APPEND debs runtime dev)
+  list(APPEND CPACK_COMPONENTS_ALL runtime dev)
 endif()
 if(SPHERECHAIN_BAKER)
-  list(APPEND archives tools)
-  list(APPEND debs tools)
+  list(APPEND CPACK_COMPONENTS_ALL tools)
 endif()
-file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/packages_of.cmake @ONLY CONTENT [[
-set(CPACK_COMPONENTS_ALL @archives@)
-set(CPACK_COMPONENT_INCLUDE_TOPLEVEL_DIRECTORY ON)
-if(CPACK_GENERATOR STREQUAL "ZIP")
-  set(CPACK_COMPONENTS_ALL sdk samples)
-  set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
-  set(CPACK_PACKAGE_FILE_NAME @CPACK_ARCHIVE_SDK_FILE_NAME@)
-endif()
-if(CPACK_GENERATOR STREQUAL "DEB")
-  set(CPACK_COMPONENTS_ALL @debs@)
-  set(CPACK_COMPONENT_INCLUDE_TOPLEVEL_DIRECTORY OFF)
-endif()
-]])
-set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_BINARY_DIR}/packages_of.cmake)
 include(CPack)

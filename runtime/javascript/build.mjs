@@ -7,10 +7,10 @@ const source = name => new URL(name, import.meta.url);
 const filled = (name, from, to) => {
   const text = readFileSync(source(name), 'utf8');
   if (!text.includes(from)) throw new Error(`${name} has no ${from}`);
-  return text.replace(from, () => to);
+  return text.replaceAll(from, () => to);
 };
 
 mkdirSync(folder, { recursive: true });
 writeFileSync(`${folder}/index.js`, filled('src/spherechain.js', '@WASM@', readFileSync(wasm, 'base64')));
 writeFileSync(`${folder}/package.json`, filled('package.json', '@VERSION@', version));
-for (const name of ['index.d.ts', 'README.md', '../LICENSE']) copyFileSync(source(name), `${folder}/${name.replace('../', '')}`);
+for (const name of ['index.d.ts', 'README.md', 'src/tool.js', '../LICENSE']) copyFileSync(source(name), `${folder}/${name.split('/').pop()}`);

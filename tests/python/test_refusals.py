@@ -140,15 +140,18 @@ class Refusals(unittest.TestCase):
             self.refuses(ValueError, "pose.bones", function, rest_pose(paper))
 
     def test_the_module_itself_reads_nothing_out_of_bounds(self):
-        native = _native.Model(DOLL.read_bytes())
-        radius = _native.Radius.detect
+        native = _native.Model(DOLL.read_bytes(), None)
+        radius = _native.RADII["detect"]
         short = np.zeros((2, len(self.model.bones) - 1, 3, 4), np.float32)
         overlapping = np.lib.stride_tricks.as_strided(self.rest, (1, *self.rest.shape), (0, 4, 16, 4))
         for bones in (short, overlapping, self.rest):
-            self.refuses((ValueError, TypeError), "bones|incompatible", native.spheres, bones, radius, 1)
+            self.refuses((ValueError, TypeError), "bones|array of", native.spheres, bones, radius, 1)
         slopes = np.zeros((1, self.model.sphere_count, 4), np.float32)
         self.refuses(ValueError, "gradient", native.spheres_vjp, self.rest[None], slopes[:, 1:], radius, 1)
         self.refuses(ValueError, "spheres", native.pairs, slopes[:, 1:], radius, 1)
+        unaligned = np.zeros(slopes.nbytes + 1, np.uint8)[1:].view(np.float32).reshape(slopes.shape)
+        for wrong in (slopes.astype(np.float64), slopes.astype(np.int32), slopes.astype(">f4"), unaligned, slopes.tolist()):
+            self.refuses(TypeError, "array of", native.pairs, wrong, radius, 1)
         query = self.model._query({}, None, None)
 
         def ask(question, poses, before=None, other=None, other_poses=None, **options):

@@ -51,7 +51,7 @@ CONTACT_ROW = np.dtype([("part", "u4"), ("other", "u4"), ("body", "u4"), ("at", 
 assert _native.SIZES == tuple(d.itemsize for d in (
     PENETRATION, PART_CONTACT, SPHERE_PAIR, TRIANGLE_PAIR, STEP, TRANSFORM, CONTACT_ROW))
 
-CLASSES = tuple(_native.Class.__members__)
+CLASSES = tuple(_native.CLASSES)
 FAULTS = CLASSES[4:]
 _NONE = 0xFFFFFFFF  # no joint; the ground in place of a part
 

@@ -14,7 +14,7 @@ from ._answers import (CLASSES, FAULTS, PART_CONTACT, PENETRATION, SPHERE_PAIR, 
                        Rule, Steps)
 
 _PENETRATIONS, _CONTACTS, _STEPS, _GROUND, _BOUNDS = range(5)  # questions of the native module
-_RADII, _SCOPES = (kind.__members__ for kind in (_native.Radius, _native.Scope))
+_RADII, _SCOPES = _native.RADII, _native.SCOPES
 _SIDES = ("", "left", "right")
 _TWO_BODIES = 4  # sc_relation
 _FAR = 1e15
@@ -388,7 +388,7 @@ class Model:
         if query.limit < 0:
             raise ValueError(f"limit is {query.limit}: pass 0, all, or more")
         parts, others = len(self.parts), len((other.model if other else self).parts)
-        classes = {_choice("classes", name, _native.Class.__members__) for name in query.classes}
+        classes = {_choice("classes", name, _native.CLASSES) for name in query.classes}
         previous = query.previous
         return {**query._asdict(), "scope": _choice("scope", query.scope, _SCOPES), "ground": ground or [0, 0, 0, 0],
                 "classes": sum(1 << int(kind) for kind in classes),

@@ -43,8 +43,8 @@ template <typename T>
 Array<T> spheres(const LoadedModel& model, const Array<T>& bones, Radius radius, std::size_t threads) {
   const Poses<T> poses = poses_of(model.info().bone_count, bones);
   const std::size_t n = model.info().sphere_count;
-  Array<T> out = make<T>({poses.count, n, 4});
-  T* const to = out.mutable_data();
+  Array<T> out = Array<T>({poses.count, n, 4});
+  T* const to = out.data();
   for_each_pose(poses.count, threads, [&] {
     return [to, n, place = sphere_worker(model, radius, poses)](std::size_t i) mutable { place(i, to + 4 * n * i); };
   });
@@ -103,7 +103,7 @@ const T* spheres_of(const LoadedModel& model, const Array<T>& array, std::size_t
 }
 
 // An array (pairs, 2) for each pose.
-py::list pairs(const LoadedModel& model, const Array<float>& spheres, Radius radius, std::size_t threads) {
+Object pairs(const LoadedModel& model, const Array<float>& spheres, Radius radius, std::size_t threads) {
   const std::size_t n = model.info().sphere_count;
   const float* const from = spheres_of(model, spheres, length(spheres), "spheres");
   std::vector<std::vector<Pair>> found(length(spheres));
@@ -113,11 +113,14 @@ py::list pairs(const LoadedModel& model, const Array<float>& spheres, Radius rad
       found[i].assign(own.begin(), own.end());
     };
   });
-  py::list out;
-  for (const std::vector<Pair>& own : found) {
-    out.append(Array<std::uint32_t>({own.size(), std::size_t{2}}, own.empty() ? nullptr : &own.front().a));
-  }
-  return out;
+  return list_of(found.size(), [&](std::size_t i) {
+    Array<std::uint32_t> out({found[i].size(), 2});
+    for (std::size_t k = 0; k < found[i].size(); ++k) {
+      out.data()[2 * k] = found[i][k].a;
+      out.data()[2 * k + 1] = found[i][k].b;
+    }
+    return out;
+  });
 }
 
 // (reach - distance)^2 with its gradient. The reach is the sum of the radii times `scale`.
@@ -165,27 +168,27 @@ class PairEnergy {
 };
 
 template <typename T>
-py::tuple pair_energy(const LoadedModel& model, const Array<T>& spheres, Radius radius, std::size_t threads) {
+Object pair_energy(const LoadedModel& model, const Array<T>& spheres, Radius radius, std::size_t threads) {
   const std::size_t count = length(spheres), n = model.info().sphere_count;
   const T* const from = spheres_of(model, spheres, count, "spheres");
-  Array<T> energy = make<T>({count}), gradient = make<T>({count, n, 4});
-  T *const energies = energy.mutable_data(), *const gradients = gradient.mutable_data();
+  Array<T> energy = Array<T>({count}), gradient = Array<T>({count, n, 4});
+  T *const energies = energy.data(), *const gradients = gradient.data();
   for_each_pose(count, threads, [&] {
     return [&, pairs = PairEnergy<T>(model, radius)](std::size_t i) mutable {
       energies[i] = pairs.run(from + 4 * n * i, gradients + 4 * n * i);
     };
   });
-  return py::make_tuple(energy, gradient);
+  return tuple_of(energy, gradient);
 }
 
 // The same of the spheres that the bones move, with the gradient by the bones' matrices.
 template <typename T>
-py::tuple sphere_energy(const LoadedModel& model, const Array<T>& bones, Radius radius, std::size_t threads) {
+Object sphere_energy(const LoadedModel& model, const Array<T>& bones, Radius radius, std::size_t threads) {
   require_moments(model);
   const std::size_t size = 12 * model.info().bone_count, n = model.info().sphere_count;
   const Poses<T> poses = poses_of(model.info().bone_count, bones);
-  Array<T> energy = make<T>({poses.count}), gradient = make<T>({poses.count, model.info().bone_count, 3, 4});
-  T *const energies = energy.mutable_data(), *const gradients = gradient.mutable_data();
+  Array<T> energy = Array<T>({poses.count}), gradient = Array<T>({poses.count, model.info().bone_count, 3, 4});
+  T *const energies = energy.data(), *const gradients = gradient.data();
   for_each_pose(poses.count, threads, [&] {
     return [&, place = sphere_worker(model, radius, poses), pairs = PairEnergy<T>(model, radius),
             pass = MomentPass<T>(model.view(), radius), spheres = std::vector<T>(4 * n),
@@ -199,7 +202,7 @@ py::tuple sphere_energy(const LoadedModel& model, const Array<T>& bones, Radius 
       }
     };
   });
-  return py::make_tuple(energy, gradient);
+  return tuple_of(energy, gradient);
 }
 
 // For any function of the spheres: from its gradient by them to that by the bones' matrices.
@@ -210,8 +213,8 @@ Array<T> spheres_vjp(const LoadedModel& model, const Array<T>& bones, const Arra
   const std::size_t bone_count = model.info().bone_count, n = model.info().sphere_count;
   const Poses<T> poses = poses_of(bone_count, bones);
   const T* const from = spheres_of(model, slopes, poses.count, "gradient");
-  Array<T> gradient = make<T>({poses.count, bone_count, 3, 4});
-  T* const to = gradient.mutable_data();
+  Array<T> gradient = Array<T>({poses.count, bone_count, 3, 4});
+  T* const to = gradient.data();
   for_each_pose(poses.count, threads, [&] {
     return [&, pass = MomentPass<T>(model.view(), radius)](std::size_t i) mutable {
       std::fill(to + 12 * bone_count * i, to + 12 * bone_count * (i + 1), T{0});
@@ -304,8 +307,8 @@ Array<T> points(const LoadedModel& model, const Array<T>& bones, const Array<std
   const Poses<T> poses = poses_of(model.info().bone_count, bones);
   const SkinPoints skin(model, triangles, weights);
   const float* const morphs = morphs_of(model, morph_weights, poses.count);
-  Array<T> out = make<T>({poses.count, skin.count(), 3});
-  T* const to = out.mutable_data();
+  Array<T> out = Array<T>({poses.count, skin.count(), 3});
+  T* const to = out.data();
   for_each_pose(poses.count, threads, [&] {
     return [&](std::size_t i) {
       for (std::size_t p = 0; p < skin.count(); ++p) {
@@ -334,8 +337,8 @@ Array<float> points_vjp(const LoadedModel& model, std::size_t count, const Array
   const std::uint32_t* const row_of = checked(rows, {skin.count()}, "rows");
   const float* const slope = checked(slopes, {skin.count(), 3}, "slopes");
   const float* const morphs = morphs_of(model, morph_weights, count);
-  Array<float> out = make<float>({count, bone_count, 3, 4});
-  float* const to = out.mutable_data();
+  Array<float> out = Array<float>({count, bone_count, 3, 4});
+  float* const to = out.data();
   std::fill(to, to + count * bone_count * 12, 0.0F);
   for (std::size_t p = 0; p < skin.count(); ++p) {
     const std::size_t row = row_of[p];
@@ -351,29 +354,21 @@ Array<float> points_vjp(const LoadedModel& model, std::size_t count, const Array
 
 Array<float> pair_scales(const LoadedModel& model, Radius radius) {
   const std::size_t n = model.info().sphere_count;
-  Array<float> out = make<float>({n, n});
-  std::copy(model.pair_scales(radius).begin(), model.pair_scales(radius).end(), out.mutable_data());
+  Array<float> out = Array<float>({n, n});
+  std::copy(model.pair_scales(radius).begin(), model.pair_scales(radius).end(), out.data());
   return out;
-}
-
-// The caller's type of number decides.
-template <typename T>
-void define_for(py::class_<LoadedModel>& model) {
-  const auto exact = [](const char* name) { return py::arg(name).noconvert(); };
-  const auto radius = py::arg("radius"), threads = py::arg("threads"), weights = py::arg("weights");
-  model.def("spheres", &spheres<T>, exact("bones"), radius, threads)
-      .def("pair_energy", &pair_energy<T>, exact("spheres"), radius, threads)
-      .def("sphere_energy", &sphere_energy<T>, exact("bones"), radius, threads)
-      .def("spheres_vjp", &spheres_vjp<T>, exact("bones"), exact("gradient"), radius, threads)
-      .def("points", &points<T>, exact("bones"), py::arg("triangles"), weights, py::arg("morph_weights"), threads);
 }
 
 }  // namespace
 
-void define_losses(py::class_<LoadedModel>& model) {
-  define_for<float>(model);
-  define_for<double>(model);
-  model.def("pairs", &pairs).def("pair_scales", &pair_scales).def("points_vjp", &points_vjp);
-}
+const std::vector<PyMethodDef> loss_methods{
+    {"spheres", call_by_type<&spheres<float>, &spheres<double>>, METH_VARARGS, nullptr},
+    {"pair_energy", call_by_type<&pair_energy<float>, &pair_energy<double>>, METH_VARARGS, nullptr},
+    {"sphere_energy", call_by_type<&sphere_energy<float>, &sphere_energy<double>>, METH_VARARGS, nullptr},
+    {"spheres_vjp", call_by_type<&spheres_vjp<float>, &spheres_vjp<double>>, METH_VARARGS, nullptr},
+    {"points", call_by_type<&points<float>, &points<double>>, METH_VARARGS, nullptr},
+    {"pairs", Call<&pairs>::run, METH_VARARGS, nullptr},
+    {"pair_scales", Call<&pair_scales>::run, METH_VARARGS, nullptr},
+    {"points_vjp", Call<&points_vjp>::run, METH_VARARGS, nullptr}};
 
 }  // namespace spherechain::python

@@ -26,13 +26,13 @@ void require(bool is_so, const char* name) {
   }
 }
 
-LoadedModel::LoadedModel(const std::string& bytes, const std::optional<std::vector<Joint>>& joints) {
+LoadedModel::LoadedModel(const Bytes& asset, const std::optional<std::vector<Joint>>& joints) {
   std::vector<Bone> bones(1);  // not empty: null joints are none
   for (std::size_t i = 0; joints && i < joints->size(); ++i) {
     const auto& [name, inverse_bind] = (*joints)[i];
     bones.insert(bones.end() - 1, {name.c_str(), inverse_bind ? checked(*inverse_bind, {3, 4}, "joints") : nullptr});
   }
-  model_ = Model(bytes.data(), bytes.size(), joints ? bones.data() : nullptr, bones.size() - 1, SC_ROWS_3X4);
+  model_ = Model(asset.data.data(), asset.data.size(), joints ? bones.data() : nullptr, bones.size() - 1, SC_ROWS_3X4);
   if (!model_) {
     throw std::invalid_argument(model_.message());
   }
@@ -98,12 +98,12 @@ void LoadedModel::give_back(Body body) const {
   spare_.push_back(std::move(body));
 }
 
-SkinPoses skin_poses_of(const LoadedModel& model, const py::object& given) {
+SkinPoses skin_poses_of(const LoadedModel& model, PyObject* given) {
   SkinPoses out;
-  if (given.is_none()) {
+  if (given == Py_None) {
     return out;
   }
-  const auto [bones, vertices, morph_weights] = given.cast<std::array<std::optional<Array<float>>, 3>>();
+  const auto [bones, vertices, morph_weights] = From<std::array<std::optional<Array<float>>, 3>>::get(given);
   require(bones || vertices, "bones");
   out.kept = bones ? *bones : *vertices;
   out.count = length(out.kept);

@@ -3,9 +3,7 @@
 // reads out of bounds; spherechain/_model.py checks what people pass, and says it in their words.
 #pragma once
 
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
-#include <pybind11/stl.h>
+#include "python.h"
 
 #include <mutex>
 #include <optional>
@@ -17,11 +15,6 @@
 
 namespace spherechain::python {
 
-namespace py = pybind11;
-
-template <typename T>
-using Array = py::array_t<T>;  // of any strides
-
 // These throw std::invalid_argument, which Python sees as ValueError: "pose.bones: too small".
 void require(const Status& status);
 void require(bool is_so, const char* name);
@@ -29,23 +22,18 @@ void require(bool is_so, const char* name);
 // An array in C order of exactly this shape.
 template <typename T>
 T* checked(const Array<T>& array, std::initializer_list<std::size_t> shape, const char* name) {
-  bool is_so = static_cast<std::size_t>(array.ndim()) == shape.size() && (array.flags() & py::array::c_style) != 0;
-  py::ssize_t axis = 0;
+  bool is_so = array.axes() == shape.size() && array.is_c_order();
+  std::size_t axis = 0;
   for (const std::size_t size : shape) {
-    is_so = is_so && static_cast<std::size_t>(array.shape(axis++)) == size;
+    is_so = is_so && array.size(axis++) == size;
   }
   require(is_so, name);
-  return const_cast<T*>(array.data());
-}
-
-template <typename T>
-Array<T> make(std::initializer_list<std::size_t> shape) {
-  return Array<T>(std::vector<py::ssize_t>(shape.begin(), shape.end()));
+  return array.data();
 }
 
 template <typename T>
 std::size_t length(const Array<T>& array) {
-  return array.ndim() > 0 ? static_cast<std::size_t>(array.shape(0)) : 0;
+  return array.axes() > 0 ? array.size(0) : 0;
 }
 
 using Joint = std::pair<std::string, std::optional<Array<float>>>;  // its name, and its inverse bind matrix, 3 by 4
@@ -54,7 +42,7 @@ using Joint = std::pair<std::string, std::optional<Array<float>>>;  // its name,
 class LoadedModel {
  public:
   // Throws std::invalid_argument with the sentence of sc_create_model().
-  LoadedModel(const std::string& bytes, const std::optional<std::vector<Joint>>& joints);
+  LoadedModel(const Bytes& asset, const std::optional<std::vector<Joint>>& joints);
 
   const Model& model() const { return model_; }
   const Asset& asset() const { return model_.asset(); }
@@ -95,15 +83,15 @@ struct Poses {
 // Takes an array (poses, bones, 3, 4).
 template <typename T>
 Poses<T> poses_of(std::size_t bone_count, const Array<T>& bones) {
-  constexpr py::ssize_t kSize = sizeof(T);
-  require(bones.ndim() == 4 && bones.shape(2) == 3 && bones.shape(3) == 4 && bones.shape(1) > 0 &&
-              static_cast<std::size_t>(bones.shape(1)) == bone_count,
-          "bones");
-  const bool lies_well = bones.strides(3) == kSize && bones.strides(2) == 4 * kSize && bones.strides(1) >= 12 * kSize &&
-                         bones.strides(1) % kSize == 0 && bones.strides(0) >= 0 && bones.strides(0) % kSize == 0;
-  require(lies_well || bones.size() == 0, "bones");
-  return {bones.data(), length(bones), static_cast<std::size_t>(bones.strides(0)) / kSize,
-          static_cast<std::size_t>(bones.strides(1)) / kSize};
+  constexpr Py_ssize_t kSize = sizeof(T);
+  require(
+      bones.axes() == 4 && bones.size(2) == 3 && bones.size(3) == 4 && bones.size(1) > 0 && bones.size(1) == bone_count,
+      "bones");
+  const bool lies_well = bones.stride(3) == kSize && bones.stride(2) == 4 * kSize && bones.stride(1) >= 12 * kSize &&
+                         bones.stride(1) % kSize == 0 && bones.stride(0) >= 0 && bones.stride(0) % kSize == 0;
+  require(lies_well || bones.size(0) == 0, "bones");
+  return {bones.data(), length(bones), static_cast<std::size_t>(bones.stride(0)) / kSize,
+          static_cast<std::size_t>(bones.stride(1)) / kSize};
 }
 
 inline Pose pose_of(const Poses<float>& poses, std::size_t bone_count, std::size_t i) {
@@ -129,15 +117,15 @@ struct SkinPoses {
 };
 
 // `given` is (bones, vertices, morph_weights), each an array or None; or it is None: there are no poses.
-SkinPoses skin_poses_of(const LoadedModel& model, const py::object& given);
+SkinPoses skin_poses_of(const LoadedModel& model, PyObject* given);
 Pose pose_of(const LoadedModel& model, const SkinPoses& poses, std::size_t i);
 
 // The limits that sc_rule has from its second field on.
 std::vector<float> default_rule();
 Rule rule_of(const std::vector<float>& limits);
 
-void define_questions(py::class_<LoadedModel>& model);
-void define_losses(py::class_<LoadedModel>& model);
-void define_response(py::module_& module);
+// The methods of Model, but those of module.cpp.
+extern const std::vector<PyMethodDef> question_methods, loss_methods;
+void add_response(PyObject* module);
 
 }  // namespace spherechain::python

@@ -2,7 +2,7 @@
 // Poses of a batch by several threads, without the GIL.
 #pragma once
 
-#include <pybind11/pybind11.h>
+#include "python.h"
 
 #include <algorithm>
 #include <atomic>
@@ -28,9 +28,9 @@ class SignalCheck {
       return;
     }
     last_ = now;
-    const pybind11::gil_scoped_acquire acquire;
+    const WithGil gil;
     if (PyErr_CheckSignals() != 0) {
-      throw pybind11::error_already_set();
+      throw PythonError{};
     }
   }
 
@@ -43,7 +43,7 @@ class SignalCheck {
 // `threads` 0: one for each core. The first exception, a signal's among them, is thrown again when all have stopped.
 template <typename MakeWorker>
 void for_each_pose(std::size_t count, std::size_t threads, const MakeWorker& make_worker) {
-  const pybind11::gil_scoped_release release;
+  const WithoutGil others_run;
   threads = std::min<std::size_t>(threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : threads, count);
   std::atomic<std::size_t> next{0};
   std::atomic_flag has_failed = ATOMIC_FLAG_INIT;

@@ -125,12 +125,12 @@ class Asker {
 };
 
 // `query` has the fields of an sc_query by their names. Both sides are (poses before or None, poses).
-py::list ask(const LoadedModel& model, int question, const py::tuple& poses, const LoadedModel* other,
-             const py::tuple& others, const py::dict& query, std::size_t threads) {
+Object ask(const LoadedModel& model, int question, const std::array<Object, 2>& poses, const LoadedModel* other,
+           const std::array<Object, 2>& others, const Object& query, std::size_t threads) {
   Asked asked{static_cast<Question>(question), {}, {}, {}};
   const LoadedModel& second = other == nullptr ? model : *other;
-  asked.sides[0] = {&model, skin_poses_of(model, poses[0]), skin_poses_of(model, poses[1])};
-  asked.sides[1] = {other, skin_poses_of(second, others[0]), skin_poses_of(second, others[1])};
+  asked.sides[0] = {&model, skin_poses_of(model, poses[0].get()), skin_poses_of(model, poses[1].get())};
+  asked.sides[1] = {other, skin_poses_of(second, others[0].get()), skin_poses_of(second, others[1].get())};
   const std::size_t count = asked.sides[0].now.count;
   for (const Side& side : asked.sides) {
     require(side.model == nullptr || side.now.count == count, "others");
@@ -139,19 +139,19 @@ py::list ask(const LoadedModel& model, int question, const py::tuple& poses, con
 
   const std::size_t parts = model.info().part_count, of_other = second.info().part_count;
   const auto words = [&](const char* name, std::size_t bits) -> const std::uint64_t* {
-    const auto given = query[name].cast<std::optional<Array<std::uint64_t>>>();
+    const auto given = entry<std::optional<Array<std::uint64_t>>>(query, name);
     return given ? checked(*given, {(bits + 63) / 64}, name) : nullptr;
   };
   Query& q = asked.query;
-  q.scope = query["scope"].cast<Scope>();
-  q.full = query["full"].cast<bool>() ? 1 : 0;
-  q.classes = query["classes"].cast<std::uint32_t>();
-  q.limit = query["limit"].cast<std::size_t>();
-  q.tolerance = query["tolerance"].cast<float>();
+  q.scope = entry<Scope>(query, "scope");
+  q.full = entry<bool>(query, "full") ? 1 : 0;
+  q.classes = entry<std::uint32_t>(query, "classes");
+  q.limit = entry<std::size_t>(query, "limit");
+  q.tolerance = entry<float>(query, "tolerance");
   q.ignored_parts = words("ignored_parts", parts);
   q.ignored_parts_of_other = words("ignored_parts_of_other", of_other);
   q.part_pairs = words("part_pairs", parts * of_other);
-  const auto previous = query["previous"].cast<std::optional<Array<std::uint8_t>>>();
+  const auto previous = entry<std::optional<Array<std::uint8_t>>>(query, "previous");
   if (previous) {
     q.previous_count = length(*previous) / sizeof(Penetration);
     q.previous =
@@ -159,28 +159,28 @@ py::list ask(const LoadedModel& model, int question, const py::tuple& poses, con
   }
   const AssetInfo info = sc_asset_get_info(&model.asset());
   std::vector<std::uint64_t> ignored(info.ignored_pairs, info.ignored_pairs + sc_pair_words(&model.asset()));
-  if (!query["ignored_spheres"].is_none()) {
-    for (const auto& [a, b] : query["ignored_spheres"].cast<std::vector<std::pair<std::uint32_t, std::uint32_t>>>()) {
+  if (const auto given =
+          entry<std::optional<std::vector<std::pair<std::uint32_t, std::uint32_t>>>>(query, "ignored_spheres")) {
+    for (const auto& [a, b] : *given) {
       const std::size_t low = std::min(a, b), high = std::max(a, b), bit = high * (high - 1) / 2 + low;
       require(low != high && high < info.sphere_count ? Status{} : Status{SC_BAD_VALUE, SC_FIELD_INDEX});
       ignored[bit / 64] |= std::uint64_t{1} << bit % 64;
     }
     q.ignored_pairs = ignored.data();
   }
-  const Rule rule = rule_of(query["rule"].cast<std::vector<float>>());
+  const Rule rule = rule_of(entry<std::vector<float>>(query, "rule"));
   q.rule = &rule;
-  const auto [x, y, z, height] = query["ground"].cast<std::array<float, 4>>();
+  const auto [x, y, z, height] = entry<std::array<float, 4>>(query, "ground");
   asked.ground.up = {x, y, z};
   asked.ground.height = height;
 
   std::vector<Answer> found(count);
   for_each_pose(count, threads,
                 [&] { return [&found, asker = Asker(asked)](std::size_t i) mutable { asker.ask(i, found[i]); }; });
-  py::list out;
-  for (const Answer& of : found) {
-    out.append(py::make_tuple(py::bytes(of.lists[0]), py::bytes(of.lists[1]), py::bytes(of.lists[2]), of.total));
-  }
-  return out;
+  return list_of(count, [&](std::size_t i) {
+    const Answer& of = found[i];
+    return tuple_of(Bytes{of.lists[0]}, Bytes{of.lists[1]}, Bytes{of.lists[2]}, of.total);
+  });
 }
 
 // Throws with the message of sc_check_rest() for the first pose that is no rest pose.
@@ -195,10 +195,18 @@ void check_rest(const LoadedModel& model, const Array<float>& bones) {
   }
 }
 
+// A static method of the class Model.
+PyObject* get_default_rule(PyObject*, PyObject*) {
+  return guarded([] {
+    const std::vector<float> rule = default_rule();
+    return list_of(rule.size(), [&](std::size_t i) { return to_python(rule[i]); }).release();
+  });
+}
+
 }  // namespace
 
-void define_questions(py::class_<LoadedModel>& model) {
-  model.def_static("default_rule", &default_rule).def("ask", &ask).def("check_rest", &check_rest);
-}
+const std::vector<PyMethodDef> question_methods{{"default_rule", &get_default_rule, METH_NOARGS | METH_STATIC, nullptr},
+                                                {"ask", Call<&ask>::run, METH_VARARGS, nullptr},
+                                                {"check_rest", Call<&check_rest>::run, METH_VARARGS, nullptr}};
 
 }  // namespace spherechain::python

@@ -19,11 +19,14 @@ Transform* joints_of(const Array<float>& array, std::size_t count, const char* n
 // A response with the bodies that it asks.
 class LoadedResponse {
  public:
-  LoadedResponse(const LoadedModel& model, const Array<std::uint32_t>& parents,
+  LoadedResponse(const Object& model_object, const Array<std::uint32_t>& parents,
                  const std::optional<Array<float>>& mobility, const std::optional<Array<float>>& budget,
                  const std::optional<Array<float>>& hinges, const std::optional<Array<std::uint64_t>>& part_pairs,
                  const std::vector<float>& rule, const LoadedModel* largest_other)
-      : model_(&model), joint_count_(length(parents)) {
+      : model_object_(model_object),
+        model_(&From<const LoadedModel&>::get(model_object.get())),
+        joint_count_(length(parents)) {
+    const LoadedModel& model = *model_;
     BodyDef body_def;
     body_def.largest_other = largest_other == nullptr ? nullptr : largest_other->model().handle();
     body_ = Body(model.model(), body_def);
@@ -44,36 +47,37 @@ class LoadedResponse {
 
   // `joints` and `state` are replaced. `frame` has the fields of an sc_response_frame by their names; `others` lists
   // (model, poses). Returns (turned, at_budget, remaining, rows as bytes).
-  py::tuple respond(const Array<std::uint64_t>& state, const Array<float>& joints, const py::dict& given) {
+  Object respond(const Array<std::uint64_t>& state, const Array<float>& joints, const Object& given) {
     if (is_busy_.test_and_set()) {
       throw std::runtime_error("the response is in use: make one for each thread");
     }
     const Leaving leaving{is_busy_};
-    const auto floats = [&](const char* name) { return given[name].cast<std::optional<Array<float>>>(); };
+    const auto floats = [&](const char* name) { return entry<std::optional<Array<float>>>(given, name); };
     const auto place = floats("place"), morph_weights = floats("morph_weights"), ahead = floats("ahead");
     ResponseFrame frame;
-    require(joints.writeable(), "joints");
-    require(state.writeable(), "state");
+    require(joints.is_writeable(), "joints");
+    require(state.is_writeable(), "state");
     frame.joints = joints_of(joints, joint_count_, "joints");
     frame.place = place ? joints_of(*place, 1, "place") : nullptr;
     frame.morph_weights = morphs_of(*model_, morph_weights, 1);
     frame.morph_weight_count = morph_weights ? model_->info().morph_count : 0;
-    frame.seconds = given["seconds"].cast<float>();
-    frame.weakness = given["weakness"].cast<float>();
-    frame.rounds = given["rounds"].cast<std::uint32_t>();
+    frame.seconds = entry<float>(given, "seconds");
+    frame.weakness = entry<float>(given, "weakness");
+    frame.rounds = entry<std::uint32_t>(given, "rounds");
     frame.ahead = ahead ? joints_of(*ahead, joint_count_, "ahead") : nullptr;
-    frame.ahead_frames = given["ahead_frames"].cast<std::uint32_t>();
+    frame.ahead_frames = entry<std::uint32_t>(given, "ahead_frames");
     Ground ground;
-    if (const auto plane = given["ground"].cast<std::optional<std::array<float, 4>>>()) {
+    if (const auto plane = entry<std::optional<std::array<float, 4>>>(given, "ground")) {
       ground.up = {(*plane)[0], (*plane)[1], (*plane)[2]};
       ground.height = (*plane)[3];
       frame.ground = &ground;
     }
     std::vector<SkinPoses> poses;  // lives as long as the bodies are asked
-    const std::vector<const sc_body*> others = take_others(given["others"], poses);
+    const std::vector<const sc_body*> others =
+        take_others(entry<std::vector<std::pair<Object, Object>>>(given, "others"), poses);
     frame.others = others.data();
     frame.other_count = others.size();
-    const auto planted = given["planted"].cast<Array<std::uint32_t>>();
+    const auto planted = entry<Array<std::uint32_t>>(given, "planted");
     frame.planted_count = length(planted);
     frame.planted = checked(planted, {frame.planted_count}, "planted");
 
@@ -82,13 +86,13 @@ class LoadedResponse {
     std::memcpy(words.words, kept, sizeof words.words);
     Status status;
     {
-      const py::gil_scoped_release release;
+      const WithoutGil others_run;
       status = response_.respond(words, frame);
     }
     require(status);
     std::memcpy(kept, words.words, sizeof words.words);
-    return py::make_tuple(frame.turned, frame.at_budget, frame.remaining,
-                          py::bytes(reinterpret_cast<const char*>(frame.rows), frame.row_count * sizeof(ContactRow)));
+    return tuple_of(frame.turned, frame.at_budget, frame.remaining,
+                    Bytes{{reinterpret_cast<const char*>(frame.rows), frame.row_count * sizeof(ContactRow)}});
   }
 
  private:
@@ -97,27 +101,28 @@ class LoadedResponse {
     ~Leaving() { is_busy.clear(); }
   };
   struct Other {
-    py::object model;  // is kept: the body is of it
+    Object model;
     Body body;
   };
 
-  std::vector<const sc_body*> take_others(const py::list& given, std::vector<SkinPoses>& poses) {
+  std::vector<const sc_body*> take_others(const std::vector<std::pair<Object, Object>>& given,
+                                          std::vector<SkinPoses>& poses) {
     std::vector<const sc_body*> out;
     poses.reserve(given.size());
     for (std::size_t i = 0; i < given.size(); ++i) {
-      const py::tuple own = given[i].cast<py::tuple>();
-      const auto& model = own[0].cast<const LoadedModel&>();
+      const auto& [model_object, own_poses] = given[i];
+      const auto& model = From<const LoadedModel&>::get(model_object.get());
       if (i == others_.size()) {
         others_.emplace_back();
       }
       Other& other = others_[i];
-      if (!other.model.is(own[0])) {
+      if (other.model.get() != model_object.get()) {
         other.body = Body();
-        other.model = own[0];
+        other.model = model_object;
         other.body = Body(model.model(), BodyDef());
         require(other.body.status());
       }
-      poses.push_back(skin_poses_of(model, own[1]));
+      poses.push_back(skin_poses_of(model, own_poses.get()));
       require(poses.back().count == 1, "others");
       require(other.body.set_pose(pose_of(model, poses.back(), 0)));
       out.push_back(other.body.handle());
@@ -125,6 +130,7 @@ class LoadedResponse {
     return out;
   }
 
+  Object model_object_;  // is kept: the body is of it
   const LoadedModel* model_;
   std::size_t joint_count_;
   std::atomic_flag is_busy_ = ATOMIC_FLAG_INIT;
@@ -133,15 +139,19 @@ class LoadedResponse {
   std::vector<Other> others_;
 };
 
+Object respond(LoadedResponse& response, const Array<std::uint64_t>& state, const Array<float>& joints,
+               const Object& frame) {
+  return response.respond(state, joints, frame);
+}
+
+PyMethodDef methods[] = {{"respond", Call<&respond>::run, METH_VARARGS, nullptr}, {}};
+
 }  // namespace
 
-void define_response(py::module_& module) {
+void add_response(PyObject* module) {
   using Floats = std::optional<Array<float>>;
-  py::class_<LoadedResponse>(module, "Response")
-      .def(py::init<const LoadedModel&, const Array<std::uint32_t>&, const Floats&, const Floats&, const Floats&,
-                    const std::optional<Array<std::uint64_t>>&, const std::vector<float>&, const LoadedModel*>(),
-           py::keep_alive<1, 2>())
-      .def("respond", &LoadedResponse::respond);
+  add_class<LoadedResponse, Object, Array<std::uint32_t>, Floats, Floats, Floats, std::optional<Array<std::uint64_t>>,
+            std::vector<float>, const LoadedModel*>(module, "spherechain._native.Response", methods);
 }
 
 }  // namespace spherechain::python
