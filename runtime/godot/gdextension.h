@@ -115,7 +115,7 @@ struct Initialization {
   void (*initialize)(void* userdata, int32_t level);
   void (*deinitialize)(void* userdata, int32_t level);
 };
-using GetProcAddress = void* (*)(const char* name);
+using FunctionLookup = void* (*)(const char* name);
 
 // Functions of Godot. A member is called as its field here is, with `lookup` the name that Godot knows.
 #define SPHERECHAIN_GODOT_FUNCTIONS(F)                                                                         \
@@ -157,7 +157,7 @@ struct Interface {
 #undef F
 
   // The name of the first function that this Godot lacks, or null.
-  const char* load(GetProcAddress get) {
+  const char* load(FunctionLookup get) {
 #define F(name, result, arguments)                          \
   name = reinterpret_cast<result(*) arguments>(get(#name)); \
   if (name == nullptr) return #name;

@@ -192,7 +192,7 @@ void unregister_classes() {
 }  // namespace spherechain::godot
 
 // Godot calls this once; addons/spherechain/spherechain.gdextension names it.
-SPHERECHAIN_ENTRY uint8_t spherechain_godot_init(spherechain::godot::GetProcAddress get, void* library,
+SPHERECHAIN_ENTRY uint8_t spherechain_godot_init(spherechain::godot::FunctionLookup get, void* library,
                                                  spherechain::godot::Initialization* initialization) {
   using namespace spherechain::godot;
   if (api.load(get) != nullptr) return 0;  // a Godot before 4.2

@@ -24,7 +24,7 @@ LD_LIBRARY_PATH=$package/Runtime/Plugins/Linux/x86_64 mono "$work/Trial.exe" tes
 
 # Each function that C# declares is in the other two libraries.
 grep -oE 'extern [^(]*sc_[a-z_]+\(' "$package/Runtime/Spherechain.Native.cs" | grep -oE 'sc_[a-z_]+' | sort -u >"$work/declared"
-python3 scripts/release/try/unity/exports.py "$package/Runtime/Plugins/Windows/x86_64/spherechain.dll" | sort -u >"$work/windows"
+python3 scripts/release/engines/exports.py "$package/Runtime/Plugins/Windows/x86_64/spherechain.dll" | sort -u >"$work/windows"
 diff "$work/declared" "$work/windows"
 echo "spherechain.dll exports $(wc -l <"$work/declared") functions"
 if command -v emcc >/dev/null && command -v node >/dev/null; then

@@ -119,7 +119,7 @@ static std::size_t faults(Node* body) {
 
 int main(int argc, char** argv) {
   require(argc == 3, "trial LIBRARY ASSET");
-  using Entry = uint8_t (*)(GetProcAddress, void*, Initialization*);
+  using Entry = uint8_t (*)(FunctionLookup, void*, Initialization*);
   const Entry entry = reinterpret_cast<Entry>(entry_of(argv[1]));
   require(entry != nullptr, "the library has its entry");
   int token = 0;
@@ -149,7 +149,8 @@ int main(int argc, char** argv) {
   require(int_of(call(body, "bind", {of_node(skeleton)})) == 0 && says("load() an asset"), "bind() before load()");
   require(int_of(call(body, "load", {of_text("no such file")})) == 0 && says("no such file"),
           "a file that is not there");
-  require(int_of(call(body, "load", {of_text(argv[1])})) == 0 && says("no sphere chain asset"), "a file that is no asset");
+  require(int_of(call(body, "load", {of_text(argv[1])})) == 0 && says("no sphere chain asset"),
+          "a file that is no asset");
   require(faults(body) == 0 && says("bind() a skeleton"), "penetrations() before bind()");
 
   Variant path = of_text(argv[2]);
