@@ -37,7 +37,7 @@ for source in "${sources[@]}"; do
   g++ "${options[@]}" -Werror -fsyntax-only -DPLATFORM_WINDOWS=1 -DSPHERECHAIN_SHARED=1 "$source"
 done
 g++ "${options[@]}" "${sources[@]}" $stubs/trial.cpp "$library/lib/Linux/libspherechain.a" -o "$work/trial"
-"$work/trial" tests/golden/doll.sphc
+"$work/trial" "$PWD/tests/golden/doll.sphc"
 
 # The library for Linux needs nothing that an old glibc lacks: Unreal brings its own.
 nm -u "$library/lib/Linux/libspherechain.a" | awk '$1 == "U" && $2 !~ /^(sc_|_Z)/ {print $2}' | sort -u >"$work/needed"
