@@ -189,12 +189,12 @@ void construct_one(void* to, const void* const*) {
 }
 
 // The functions of one kind, by type.
-#define TYPES(F)                                                                                           \
-  F(kBool)                                                                                                 \
-  F(kInt)                                                                                                  \
-  F(kFloat)                                                                                                \
-  F(kString) F(kVector3) F(kQuaternion) F(kTransform3D) F(kStringName) F(kObject) F(kDictionary) F(kArray) \
-      F(kPackedByteArray)
+#define TYPES(F) \
+  F(kBool)       \
+  F(kInt)        \
+  F(kFloat)      \
+  F(kString)     \
+  F(kVector3) F(kQuaternion) F(kTransform3D) F(kStringName) F(kObject) F(kDictionary) F(kArray) F(kPackedByteArray)
 Interface::FromType get_from(int32_t type) {
 #define F(t) \
   if (type == t) return from_one<t>;

@@ -139,7 +139,7 @@ int main(int argc, char** argv) {
   require(static_cast<bool>(model), model.message());
   Node* const skeleton = make_skeleton(model);
 
-  // Mistakes are told, and change nothing.
+  // Mistakes are reported, and change nothing.
   Node* const body = make("SpherechainBody");
   Node* const response = make("SpherechainResponse");
   call(body, "load", {}, kTooFewArguments);
@@ -225,7 +225,7 @@ int main(int argc, char** argv) {
   require(std::abs(arm->rotation.z - steady) < 1e-3f, "the response is steady");
   call(response, "reset", {});
   std::printf("the response turns %d bones: no fault is left\n", static_cast<int>(turned));
-  require(errors.empty(), "nothing else was told");
+  require(errors.empty(), "nothing else was reported");
 
   // A body that is bound again needs a new response; a skeleton may go.
   require(int_of(call(body, "bind", {of_node(skeleton)})) == 1, "bind() again");
@@ -244,7 +244,7 @@ int main(int argc, char** argv) {
   destroy(last_body);
   for (int32_t level = 3; level >= 0; --level) initialization.deinitialize(initialization.userdata, level);
   require(classes.empty(), "the classes are unregistered");
-  require(errors.empty(), "nothing else was told");
+  require(errors.empty(), "nothing else was reported");
   std::printf("%d values are alive\n", static_cast<int>(alive));
   return alive == 0 ? 0 : 1;
 }

@@ -6,7 +6,7 @@ import re
 import sys
 from pathlib import Path
 
-# What Unreal reads (FPluginDescriptor, FModuleDescriptor): names and types.
+# Unreal reads these keys, of these types (FPluginDescriptor, FModuleDescriptor).
 PLUGIN = {"FileVersion": int, "Version": int, "VersionName": str, "FriendlyName": str, "Description": str, "Category": str,
           "CreatedBy": str, "CreatedByURL": str, "DocsURL": str, "MarketplaceURL": str, "SupportURL": str, "EngineVersion": str,
           "CanContainContent": bool, "IsBetaVersion": bool, "IsExperimentalVersion": bool, "Installed": bool,
