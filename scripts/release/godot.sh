@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # The addon for Godot 4, for Linux and Windows: `scripts/release/godot.sh OUT`. Compiles for Windows by mingw-w64.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
+. scripts/release/common.sh
 out=$(mkdir -p "$1" && cd "$1" && pwd)
-version=$(sed -n 's/^project(spherechain VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 scripts/release/engines/runtimes.sh linux-static windows-static
 
 addon=build/engines/godot/addons/spherechain

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # The recipes for vcpkg and Conan: `scripts/release/recipes.sh OUT`. Whoever publishes them fills in where the sources lie.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
+. scripts/release/common.sh
 out=$(mkdir -p "$1" && cd "$1" && pwd)
-version=$(sed -n 's/^project(spherechain VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 recipes=scripts/release/recipes
 for file in vcpkg/ports/spherechain/vcpkg.json conan/recipes/spherechain/config.yml conan/recipes/spherechain/all/conandata.yml; do
   grep -q "\"$version\"" $recipes/$file || { echo "recipes: $recipes/$file is of another version than $version" >&2; exit 1; }

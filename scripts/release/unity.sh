@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # The Unity package, as a tarball for the Package Manager: `scripts/release/unity.sh OUT`. It holds the C# classes, the samples
 # and the libraries for Linux, Windows and WebGL. Compiles for Windows by mingw-w64 and for WebGL by emscripten.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
+. scripts/release/common.sh
 out=$(mkdir -p "$1" && cd "$1" && pwd)
-version=$(sed -n 's/^project(spherechain VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 scripts/release/engines/runtimes.sh linux-shared windows-shared web-static
 
 package=build/engines/unity/package

@@ -1,16 +1,12 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # The plugin for Unreal Engine 5, as source with the runtime's libraries for Linux and Windows: `scripts/release/unreal.sh OUT`.
 # Compiles for Windows by mingw-w64, and makes the import library for Microsoft's linker by llvm-dlltool.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
+. scripts/release/common.sh
 out=$(mkdir -p "$1" && cd "$1" && pwd)
-version=$(sed -n 's/^project(spherechain VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
-if ! command -v llvm-dlltool >/dev/null; then
-  [[ $(id -u) -eq 0 ]] || { echo "unreal: llvm-dlltool is missing: install llvm first" >&2; exit 1; }
-  echo "Installing llvm" >&2
-  apt-get update -qq >&2
-  DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends llvm >/dev/null
-fi
+needs llvm-dlltool llvm
 scripts/release/engines/runtimes.sh linux-static windows-shared
 
 plugin=build/engines/unreal/Spherechain

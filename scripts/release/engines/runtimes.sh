@@ -1,17 +1,11 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Builds the runtime for the packages of game engines: `runtimes.sh KIND ...`, into build/engines/KIND, for the kinds
 #   linux-shared linux-static windows-shared windows-static web-static
 # Each has include/ and lib/ or bin/. A package takes the files that it needs. Installs mingw-w64 or emscripten where it may.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
-
-require() {  # COMMAND PACKAGE
-  command -v "$1" >/dev/null && return
-  [[ $(id -u) -eq 0 ]] || { echo "runtimes: $1 is missing: install $2 first" >&2; exit 1; }
-  echo "Installing $2" >&2
-  apt-get update -qq >&2
-  DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$2" >/dev/null
-}
+. scripts/release/common.sh
 
 # A cross compiler needs only the headers of FlatBuffers and Highway. All of /usr/include would bring Linux's too.
 headers=$PWD/build/engines/headers
@@ -28,11 +22,11 @@ for kind in "$@"; do
   case $kind in
     linux-*) ;;
     windows-*)
-      require x86_64-w64-mingw32-g++-posix g++-mingw-w64-x86-64-posix
+      needs x86_64-w64-mingw32-g++-posix g++-mingw-w64-x86-64-posix
       options+=(--toolchain "$PWD/cmake/mingw.cmake" -D SPHERECHAIN_WINDOWS_ROOT="$headers"
         -D SPHERECHAIN_HIGHWAY_INCLUDE_DIR="$headers" -D SPHERECHAIN_FLATBUFFERS_INCLUDE_DIR="$headers") ;;
     web-static)
-      require emcc emscripten
+      needs emcc emscripten
       configure=(emcmake cmake)
       options+=(-D CMAKE_CXX_FLAGS="-msimd128 -DHWY_COMPILE_ONLY_STATIC"
         -D SPHERECHAIN_HIGHWAY_INCLUDE_DIR="$headers" -D SPHERECHAIN_FLATBUFFERS_INCLUDE_DIR="$headers") ;;

@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Tries the Godot addon of OUT: `scripts/release/try/godot.sh OUT`. A program with the functions of Godot's extension interface
 # loads its libraries as Godot does, the one for Windows with wine, and goes from a golden asset to a contact and a response.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
+. scripts/release/common.sh
 archive=$(ls "$1"/*godot*.zip)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Tries the recipes of OUT: `scripts/release/try/recipes.sh OUT`. There is no vcpkg and no Conan here: their steps run on stubs, with
 # the files that CMake installs, and the programs of a stranger find the library there.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
+. scripts/release/common.sh
 archive=$(ls "$1"/*recipes*.zip)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Tries the Unity package of OUT: `scripts/release/try/unity.sh OUT`. Checks its manifest and its .meta files, compiles its C# by
 # mono's compiler for each platform, and runs both samples on stubs of Unity's classes with the library for Linux. Links the
 # library for WebGL into a program that Node runs.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
+. scripts/release/common.sh
 for command in mcs mono python3; do
-  command -v $command >/dev/null || { echo "skipped: $command is missing (Debian: mono-mcs)"; exit 77; }
+  command -v $command >/dev/null || skip "$command is missing (Debian: mono-mcs)"
 done
 tarball=$(ls "$1"/*unity*.tgz)
 work=$(mktemp -d)

@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Tries the Unreal plugin of OUT: `scripts/release/try/unreal.sh OUT`. There is no Unreal here: the descriptor is compared with the keys
 # that Unreal knows, the build rules run on a stub of UnrealBuildTool, and the C++ is compiled and run on stubs of Unreal's types,
 # linked with the plugin's library, from a golden asset to a contact and a response.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
+. scripts/release/common.sh
 for command in mcs mono lld-link; do
-  command -v $command >/dev/null || { echo "skipped: $command is missing (Debian: mono-mcs, lld)"; exit 77; }
+  command -v $command >/dev/null || skip "$command is missing (Debian: mono-mcs, lld)"
 done
 archive=$(ls "$1"/*unreal*.zip)
 work=$(mktemp -d)

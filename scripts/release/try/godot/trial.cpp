@@ -187,7 +187,8 @@ int main(int argc, char** argv) {
   require(arm != nullptr, "the trial's asset has a left_shoulder");
   for (float angle = 0; angle < 2 && faults(body) == 0; angle += 0.05f) {
     for (float side : {-1.0f, 1.0f}) {
-      arm->rotation = {0, 0, side * std::sin(angle / 2), std::cos(angle / 2)};
+      const float sin = side * std::sin(angle / 2);
+      arm->rotation = {0.36f * sin, 0.48f * sin, 0.8f * sin, std::cos(angle / 2)};
       if (faults(body) > 0) break;
     }
   }

@@ -110,7 +110,8 @@ public static class Trial
         {
             for (int side = -1; side <= 1 && deepest < 0.01f * model.Height; side += 2)  // which way is down depends on the axes
             {
-                arm.localRotation = new Quaternion(0, 0, side * (float)Math.Sin(angle / 2), (float)Math.Cos(angle / 2));
+                float sin = side * (float)Math.Sin(angle / 2);  // about no axis of the file, so a wrong mirror shows
+                arm.localRotation = new Quaternion(0.36f * sin, 0.48f * sin, 0.8f * sin, (float)Math.Cos(angle / 2));
                 deepest = Deepest(contacts, renderer);
             }
         }

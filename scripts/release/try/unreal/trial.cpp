@@ -123,7 +123,8 @@ int main(int argc, char** argv) {
   const float enough = 0.01f * kUnit * model.info().height;
   for (float angle = 0; angle < 2 && depth < enough; angle += 0.05f) {
     for (upper = -1; upper <= 1 && depth < enough; upper += 2) {
-      locals[arm].rotation = {0, 0, upper * std::sin(angle / 2), std::cos(angle / 2)};
+      const float sin = upper * std::sin(angle / 2);  // about no axis of the file, so a wrong mirror shows
+      locals[arm].rotation = {0.36 * sin, 0.48 * sin, 0.8 * sin, std::cos(angle / 2)};
       depth = deepest(component, skeletal, locals);
     }
   }
