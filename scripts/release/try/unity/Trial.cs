@@ -119,13 +119,21 @@ public static class Trial
         Penetration first = contacts.Penetrations[0];
         Console.WriteLine("{0} in {1}: {2:F1} % of the height", contacts.PartName(first.Part), contacts.PartName(first.Other), 100 * first.Measures.Depth / model.Height);
 
-        // Nobody animates the arm any more: it stays out, and no correction adds to the one before.
-        for (int frame = 0; frame < 40; ++frame) Call(response, "LateUpdate");
-        Quaternion steady = arm.localRotation;
-        float left = Deepest(contacts, renderer);
-        Call(response, "LateUpdate");
+        Quaternion animated = arm.localRotation;
+        for (int frame = 0; frame < 40; ++frame)  // the arm is animated
+        {
+            arm.localRotation = animated;
+            Call(response, "LateUpdate");
+        }
+        float expected = arm.localRotation.z, left = Deepest(contacts, renderer);
         Require(response.Turned > 0 && left < 0.5f * deepest, "the response brings the arm out: " + left + " of " + deepest);
-        Require(Math.Abs(arm.localRotation.z - steady.z) < 1e-3f, "the response is steady");
+        arm.localRotation = animated;
+        response.Forget();
+        for (int frame = 0; frame < 40; ++frame) Call(response, "LateUpdate");  // nobody animates it any more
+        Require(Math.Abs(arm.localRotation.z - expected) < 1e-4f, "corrections of a pose that stays do not add up");
+        response.weakness = 1;
+        for (int frame = 0; frame < 40; ++frame) Call(response, "LateUpdate");
+        Require(arm.localRotation.z == animated.z, "with weakness 1 the arm is as animated");
         Console.WriteLine("after the response: {0:F1} %", 100 * left / model.Height);
         Require(Debug.Lines.Count == 0, "nothing is logged");
         return 0;
