@@ -14,7 +14,7 @@ library=$plugin/Source/ThirdParty/spherechain
 binaries=$plugin/Binaries/ThirdParty/spherechain/Win64
 rm -rf build/engines/unreal
 mkdir -p $library/lib/Linux $library/lib/Win64 $binaries
-cp -r runtime/unreal/. $plugin/
+cp -r runtime/unreal/* $plugin/
 sed -i "s/\"VersionName\": \"0.0.0\"/\"VersionName\": \"$version\"/" $plugin/Spherechain.uplugin
 cp runtime/LICENSE $plugin/
 cp runtime/copyright $library/

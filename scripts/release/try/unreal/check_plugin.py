@@ -32,7 +32,7 @@ if descriptor["FileVersion"] != 3 or not re.fullmatch(r"\d+\.\d+\.\d+", descript
 for module in descriptor["Modules"]:
     check(module, MODULE, module["Name"])
     folder = plugin / "Source" / module["Name"]
-    if module["Type"] not in TYPES or module["LoadingPhase"] not in PHASES:
+    if module["Type"] not in TYPES or module.get("LoadingPhase") not in PHASES:
         wrong.append("%s: its type or phase" % module["Name"])
     sources = "".join(path.read_text() for path in folder.rglob("*.cpp"))
     if not (folder / (module["Name"] + ".Build.cs")).is_file() or not re.search(r"IMPLEMENT_MODULE\(\w+, %s\)" % module["Name"], sources):
