@@ -5,6 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 . scripts/release/common.sh
+doll=$(find tests/golden -name doll.sphc | sort | head -1)
 archive=$(ls "$1"/*recipes*.zip)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -17,7 +18,7 @@ cmake -D PORT_FOLDER="$recipes/vcpkg/ports/spherechain" -D BUILD="$build" -D PAC
 [[ -z $(find "$work/vcpkg" -type d -empty) ]] || { echo "recipes: the port leaves empty folders" >&2; exit 1; }
 cmake -G Ninja -S tests/package/stranger -B "$work/stranger" -D CMAKE_PREFIX_PATH="$work/vcpkg" -D CMAKE_FIND_USE_PACKAGE_REGISTRY=OFF >/dev/null
 cmake --build "$work/stranger" >/dev/null
-echo "vcpkg: $("$work/stranger/stranger_c" tests/golden/doll.sphc)"
+echo "vcpkg: $("$work/stranger/stranger_c" "$doll")"
 
 recipe=$recipes/conan/recipes/spherechain/all
 python3 scripts/release/try/recipes/conan_steps.py "$recipe" "$build" "$PWD/build/engines/linux-static"
