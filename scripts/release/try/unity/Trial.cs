@@ -40,9 +40,22 @@ public static class Trial
         };
     }
 
+    static Quaternion RotationOf(Matrix4x4 m)
+    {
+        double w = Math.Sqrt(Math.Max(0, 1 + m.m00 + m.m11 + m.m22)) / 2, x = Math.Sqrt(Math.Max(0, 1 + m.m00 - m.m11 - m.m22)) / 2;
+        double y = Math.Sqrt(Math.Max(0, 1 - m.m00 + m.m11 - m.m22)) / 2, z = Math.Sqrt(Math.Max(0, 1 - m.m00 - m.m11 + m.m22)) / 2;
+        return new Quaternion((float)(m.m21 < m.m12 ? -x : x), (float)(m.m02 < m.m20 ? -y : y), (float)(m.m10 < m.m01 ? -z : z), (float)w);
+    }
+
+    static Quaternion Product(Quaternion a, Quaternion b)
+    {
+        return new Quaternion(a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+                              a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z);
+    }
+
     static Matrix4x4 World(Transform t) { return t.parent == null ? Local(t) : World(t.parent) * Local(t); }
 
-    // The asset's bones, without rotations at rest, each under the bone that its body part hangs on.
+    // The asset's bones, each under the bone that its body part hangs on.
     static SkinnedMeshRenderer Skeleton(Model model, Transform root)
     {
         int count = model.BoneCount;
@@ -67,7 +80,7 @@ public static class Trial
         {
             int above = Array.IndexOf(renderer.bones, renderer.bones[i].parent);
             Matrix4x4 local = above < 0 ? rest[i] : renderer.sharedMesh.bindposes[above] * rest[i];
-            Require(Math.Abs(local.m00 - 1) < 1e-4f && Math.Abs(local.m11 - 1) < 1e-4f, "the trial's skeleton: " + model.BoneNames[i] + " is turned at rest");
+            renderer.bones[i].localRotation = RotationOf(local);
             renderer.bones[i].localPosition = new Vector3(local.m03, local.m13, local.m23);
         }
         return renderer;
@@ -104,14 +117,15 @@ public static class Trial
         Require(contacts.enabled && response.enabled, "the samples bind");
         Require(Deepest(contacts, renderer) == 0, "no fault at rest");
 
-        Transform arm = Array.Find(renderer.bones, bone => bone.name == "left_shoulder");
+        Transform arm = renderer.bones[model.PartBone(Array.IndexOf(model.PartNames, "left upper arm"))];
+        Quaternion rest = arm.localRotation;
         float deepest = 0;
         for (float angle = 0; angle <= 2 && deepest < 0.01f * model.Height; angle += 0.05f)
         {
             for (int side = -1; side <= 1 && deepest < 0.01f * model.Height; side += 2)  // which way is down depends on the axes
             {
                 float sin = side * (float)Math.Sin(angle / 2);  // about no axis of the file, so a wrong mirror shows
-                arm.localRotation = new Quaternion(0.36f * sin, 0.48f * sin, 0.8f * sin, (float)Math.Cos(angle / 2));
+                arm.localRotation = Product(rest, new Quaternion(0.36f * sin, 0.48f * sin, 0.8f * sin, (float)Math.Cos(angle / 2)));
                 deepest = Deepest(contacts, renderer);
             }
         }
