@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The types of UnityEngine that SelfCollision.cs uses, written from its documentation: matrices are column-major, m01 is row 0 of column
-// 1. Bones are given by their world matrices; there is no scene.
+// The types of UnityEngine that the components use, written from its documentation: matrices are column-major, m01 is row 0 of column
+// 1. Bones are given by their world matrices, and apart from them by parent, place and rotation; there is no scene.
 using System;
 using System.Collections.Generic;
 
@@ -8,6 +8,10 @@ namespace UnityEngine
 {
     [AttributeUsage(AttributeTargets.Field)]
     public sealed class TooltipAttribute : Attribute { public TooltipAttribute(string text) { } }
+    [AttributeUsage(AttributeTargets.Field)]
+    public sealed class RangeAttribute : Attribute { public RangeAttribute(float low, float high) { } }
+    [AttributeUsage(AttributeTargets.Class)]
+    public sealed class DefaultExecutionOrder : Attribute { public DefaultExecutionOrder(int order) { } }
     [AttributeUsage(AttributeTargets.Method)]
     public sealed class ContextMenuAttribute : Attribute { public ContextMenuAttribute(string name) { } }
 
@@ -16,6 +20,12 @@ namespace UnityEngine
         public float x, y, z;
         public Vector3(float x, float y, float z) { this.x = x; this.y = y; this.z = z; }
         public static Vector3 operator +(Vector3 a, Vector3 b) { return new Vector3(a.x + b.x, a.y + b.y, a.z + b.z); }
+    }
+
+    public struct Quaternion
+    {
+        public float x, y, z, w;
+        public Quaternion(float x, float y, float z, float w) { this.x = x; this.y = y; this.z = z; this.w = w; }
     }
 
     public struct Color
@@ -92,6 +102,9 @@ namespace UnityEngine
     public sealed class Transform : Object
     {
         public Matrix4x4 localToWorldMatrix;
+        public Transform parent;
+        public Vector3 localPosition, localScale = new Vector3(1, 1, 1);
+        public Quaternion localRotation = new Quaternion(0, 0, 0, 1);
         public Matrix4x4 worldToLocalMatrix { get { return localToWorldMatrix.inverse; } }
     }
 
@@ -117,6 +130,8 @@ namespace UnityEngine
         public static void Log(object text, Object context) { Lines.Add("log: " + text); }
         public static void LogError(object text, Object context) { Lines.Add("error: " + text); }
     }
+
+    public static class Time { public static float deltaTime = 1 / 30f; }
 
     public static class Gizmos
     {
