@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "baker/os/written_file.h"
+#include "baker/write/npz.h"
 
 namespace spherechain::baker {
 namespace {
@@ -62,6 +63,8 @@ bool is_own_text(const std::string& text, FileKind kind) {
       return text.starts_with("<!doctype html>") && has("<meta name=\"generator\" content=\"spherechain\">");
     case FileKind::kColliders:
       return is_json || has("Written by spherechain") || has("doc = \"spherechain: colliders of ");
+    case FileKind::kPalettes:
+      return is_own_npz(text);
     case FileKind::kGlb:
     case FileKind::kBvh:
     case FileKind::kFbx:
@@ -90,6 +93,8 @@ const char* kind_text(FileKind kind) {
       return "a BVH file";
     case FileKind::kFbx:
       return "an FBX file";
+    case FileKind::kPalettes:
+      return "a file of palettes";
     case FileKind::kColliders:
       break;
   }

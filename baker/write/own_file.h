@@ -6,7 +6,7 @@
 namespace spherechain::baker {
 
 // A kind of file that commands write.
-enum class FileKind { kAsset, kJson, kSarif, kJunit, kPage, kGlb, kBvh, kFbx, kColliders };
+enum class FileKind { kAsset, kJson, kSarif, kJunit, kPage, kGlb, kBvh, kFbx, kColliders, kPalettes };
 
 // "an asset", "a page".
 const char* kind_text(FileKind kind);

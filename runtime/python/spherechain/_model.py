@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import os
-from typing import Any, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _native
+from . import _native, _table
 from ._answers import (CLASSES, FAULTS, PART_CONTACT, PENETRATION, SPHERE_PAIR, STEP, TRIANGLE_PAIR, Contacts, Penetrations,
                        Rule, Steps)
 
@@ -119,6 +119,7 @@ class Model:
         except ValueError as error:
             raise ValueError(f"{name}: {error}") from None
         self._arguments = data, joints
+        self._file = name if isinstance(source, (str, os.PathLike)) else None
         info = self._native.info()
         places = info.pop("joint_of_bone")
         self._joint_of_bone = np.array(places) if joints is not None else None
@@ -214,6 +215,18 @@ class Model:
         """
         found, batch, names = self._ask(_STEPS, (bones, None, None), other, threads, query, before=bones_before)
         return _nested([Steps(np.frombuffer(of[0], STEP), names) for of in found], batch)
+
+    def table(self, poses: Any, *, contacts: bool = False, progress: Optional[Callable[[int, int], Any]] = None,
+              threads: int = 0, **query: Any) -> Dict[str, np.ndarray]:
+        """One row for each penetration in each frame, as columns by name: for CSV, Parquet or pandas.
+
+        poses: what load_motion() gave, in which a fault stays one until it is clearly none, as in `play`; or an array
+        (frames, joints, 3, 4), of which each pose is measured alone. contacts: rows are contacts, not penetrations.
+        progress: called with frames done and all frames. threads: of an array and of contacts. query: keywords of Query,
+        and `other` where poses are an array. Lengths that end in _mm are in millimetres, others in the pose's units; a
+        volume that is not known is NaN.
+        """
+        return _table.table(self, poses, contacts, progress, threads, query)
 
     def bounds(self, bones: Any = None, *, vertices: Any = None, morph_weights: Any = None, threads: int = 1) -> np.ndarray:
         """A box that holds all of the skin for certain: float32 (..., 2, 3), its low corner and its high one."""
