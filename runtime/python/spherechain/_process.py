@@ -13,9 +13,10 @@ from typing import Any, Callable, Iterator, List, NamedTuple, Optional, Sequence
 
 from ._tool import PathLike, ToolError
 
-Progress = Callable[[int, int], Any]  #: called with how much is done, and of how much
+Progress = Callable[[float, float], Any]  #: called with how much is done, and of how much
 
-_STEP = re.compile(r": .*?(\d+) of (\d+)")
+_STEP = re.compile(r"(\d+) of (\d+)")
+_MESSAGES = ("error", "warning", "note")
 _GRACE = 0.1  # seconds from the wish to end to the end
 
 
@@ -73,11 +74,14 @@ def end(process: subprocess.Popen) -> None:
 def _read(stream: Any, lines: List[str], progress: Optional[Progress]) -> None:
     with stream:
         for line in stream:
-            step = _STEP.search(line)
-            if not step or not line.startswith("spherechain: ") or line.startswith("spherechain: error: "):
+            kind = line.split(": ")[1] if line.startswith("spherechain: ") and line.count(": ") > 1 else ""
+            if not line.startswith("spherechain: ") or kind in _MESSAGES:
                 lines.append(line)
-            elif progress:
-                progress(int(step[1]), int(step[2]))
+                continue
+            steps = [(int(done), int(total)) for done, total in _STEP.findall(line)]  # "0 of 2 clips; frame 22 of 2752"
+            if steps and progress:
+                done = sum(min(share / max(total, 1), 1) for share, total in steps[1:2])
+                progress(steps[0][0] + done, steps[0][1])
 
 
 def _program(tool: Optional[PathLike]) -> str:
