@@ -68,6 +68,7 @@ bool is_own_text(const std::string& text, FileKind kind) {
     case FileKind::kGlb:
     case FileKind::kBvh:
     case FileKind::kFbx:
+    case FileKind::kTable:
       break;
   }
   return false;
@@ -95,6 +96,8 @@ const char* kind_text(FileKind kind) {
       return "an FBX file";
     case FileKind::kPalettes:
       return "a file of palettes";
+    case FileKind::kTable:
+      return "a table";
     case FileKind::kColliders:
       break;
   }

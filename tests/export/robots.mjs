@@ -26,6 +26,19 @@ export function character(shapeOfFormat, poses) {
     for (const line of out.split('\n')) if (line.startsWith('note:')) console.log(line)
     return fs.readFileSync(file, 'utf8')
   }
+  // The CSVs that an export writes of the source's clips.
+  one.tables = (format, file) => {
+    const stem = file.replace(/\.[^.]*$/, '.')
+    for (const old of fs.readdirSync('.')) if (old.startsWith(stem)) fs.rmSync(old)
+    run(tool, 'export', one.asset, '--to', format, '-o', file, '--source', one.source, '--volumes', one.shape)
+    const clips = [...new Set(one.all_frames().map(pose => pose.clip))]
+    return fs.readdirSync('.').filter(name => name.startsWith(stem) && name.endsWith(`.${format}.csv`)).map(name => {
+      const [header, ...lines] = fs.readFileSync(name, 'utf8').trim().split('\n')
+      const clip = clips.find(clip => clip.replace(/[^A-Za-z0-9-]/g, '_') === name.slice(stem.length, -5 - format.length))
+      return { clip, columns: header.split(',').slice(1), rows: lines.map(line => line.split(',').map(Number)) }
+    })
+  }
+  one.all_frames = () => one.every ??= JSON.parse(run(posedColliders, one.asset, one.source, one.shape, one.atMost, '0')).poses
   one.json = JSON.parse(one.export('capsules.json', 'robot.capsules.json'))
   one.identifiers = one.json.bodies.map(body => body.part.replace(/[^A-Za-z0-9]/g, '_'))
   // Rows: where forward, left and up of the character go to X, Y and Z.
