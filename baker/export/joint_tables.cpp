@@ -68,7 +68,7 @@ std::vector<ExportFile> tables(const char* format, const std::vector<PosedClip>&
     for (int k = 2; !taken.insert(name).second; ++k) name = fmt::format("{}_{}", stem, k);
     std::string text = "time" + header() + "\n";
     for (std::size_t f = 0; f < clip.frames.size(); ++f) {
-      text += fmt::format("{:.6g}", clip.seconds[f]) + row(clip.frames[f], f == 0) + "\n";
+      text += fmt::format("{:.9g}", clip.seconds[f]) + row(clip.frames[f], f == 0) + "\n";
     }
     out.push_back({fmt::format(".{}.{}.csv", name, format), std::move(text)});
   }

@@ -6,8 +6,8 @@ const models = '/usr/share/assimp/models'
 
 // Arguments of each script: TOOL POSED_COLLIDERS [ASSET SOURCE [SHAPE AT_MOST [MOTION]]]. Without an asset the human of
 // assimp's models, as the tool's own preview writes it, boxing.
-export function character(shapeOfFormat, poses) {
-  const [tool, posedColliders, asset, source, shape, atMost, motion] = process.argv.slice(2)
+export function character(shapeOfFormat, poses, args = process.argv.slice(2)) {
+  const [tool, posedColliders, asset, source, shape, atMost, motion] = args
   const run = (...args) => execFileSync(args[0], args.slice(1), { encoding: 'utf8', maxBuffer: 1 << 30 })
   const one = { tool, run, asset, source, shape: shape ?? shapeOfFormat, atMost: atMost ?? '0', motion }
   if (!asset) {
@@ -49,6 +49,14 @@ export function character(shapeOfFormat, poses) {
     if (i < j && !ignored.has(a.part + '|' + b.part)) one.pairs.push([i, j])
   }))
   return one
+}
+
+// The character whose clips are played: that of the arguments, else one of assimp's models that has a clip.
+export function withClips(one) {
+  if (process.argv[4]) return one
+  const [tool, posedColliders] = process.argv.slice(2), source = models + '/X/Testwuson.X'
+  one.run(tool, 'bake', source, '-o', 'walker.sphc')
+  return character('spheres', 1, [tool, posedColliders, 'walker.sphc', source])
 }
 
 // Quaternions x y z w.
