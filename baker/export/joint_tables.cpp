@@ -36,7 +36,7 @@ Placed placed(const Colliders& colliders, const std::vector<Eigen::Isometry3d>& 
 
 double wrapped(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
 
-// Angles with turn = X(x) Y(y) Z(z). Of the two solutions the one that is nearer to the frame before.
+// The angles with turn = X(x) Y(y) Z(z). There are two solutions: takes the one that is nearer to the frame before.
 std::array<double, 3> three_angles(const Eigen::Quaterniond& turn, const std::array<double, 3>& before) {
   const Eigen::Matrix3d r = turn.toRotationMatrix();
   const double y = std::atan2(r(0, 2), std::hypot(r(0, 0), r(0, 1)));

@@ -261,8 +261,9 @@ def _score(call: "Call", arguments: Dict[str, Any]) -> Result:
     with tempfile.TemporaryDirectory(prefix="spherechain-") as folder:
         call.run("score", *library, *options, "-o", folder)
         found = json.loads(Path(folder, "score.json").read_text(encoding="utf-8"))
+    pictures = [] if "clip" in arguments else _pictures_of(call, library[0], *library[1:], *_motion(call, arguments))
     clips = [{key: clip[key] for key in ("character", "clip", "frames", "fps", "metrics")} for clip in found["clips"]]
-    return {"clips": clips, "failed": found["failed"]}, []
+    return {"clips": clips, "failed": found["failed"]}, pictures
 
 
 def _bake(call: "Call", arguments: Dict[str, Any]) -> Result:

@@ -168,7 +168,7 @@ class Model:
         try:
             self._native.check_rest(poses)
         except ValueError as error:
-            mistake = _pose_check.find_mistake(self, self._by_bone(poses))
+            mistake = _pose_check.find_mistake(self, poses)
             raise ValueError(f"{error}; {mistake}" if mistake else str(error)) from None
 
     def check_pose(self, bones: NDArray[np.float32]) -> None:
@@ -182,7 +182,7 @@ class Model:
         array = np.asarray(bones)
         if array.shape[-2:] == (4, 4) and (array[..., 3, :3] != 0).any() and not (array[..., :3, 3] != 0).any():
             raise ValueError("bones: they are transposed: a translation is the last column, not the last row")
-        mistake = _pose_check.find_mistake(self, self._by_bone(self._poses(bones)[0]))
+        mistake = _pose_check.find_mistake(self, self._poses(bones)[0])
         if mistake:
             raise ValueError(f"bones: {mistake}")
 
@@ -465,7 +465,7 @@ class Model:
         if self._is_looked_at or not len(poses):
             return
         self._is_looked_at.append(True)
-        mistake = _pose_check.find_mistake(self, self._by_bone(poses))
+        mistake = _pose_check.find_mistake(self, poses)
         if mistake:
             warnings.warn(f"bones of {self.source_file}: {mistake}", MatrixWarning, stacklevel=2)
 
@@ -497,9 +497,9 @@ class Model:
         if last != shape and (other is None or last != other):
             wanted = ", ".join(str(size) for size in shape)
             raise ValueError(f"{name} has the shape {array.shape}: pass ({'' if exact else '..., '}{wanted})")
-        is_wrong = ~(np.abs(array) <= _FAR)  # squares of more would overflow, and such spheres touch nothing
-        if is_wrong.any():
-            place = tuple(int(i) for i in np.argwhere(is_wrong)[0])
+        # Squares of more would overflow, and such spheres touch nothing. A NaN makes minimum and maximum one.
+        if array.size and not (-_FAR <= array.min() and array.max() <= _FAR):
+            place = tuple(int(i) for i in np.argwhere(~(np.abs(array) <= _FAR))[0])
             raise ValueError(f"{name}{list(place)} is {array[place]}: pass numbers up to {_FAR:g}")
         return array
 

@@ -25,9 +25,9 @@ _UNITS = {100: "metres, and the asset in centimetres", 0.01: "centimetres, and t
 
 
 def find_mistake(model: "Model", poses: np.ndarray) -> Optional[str]:
-    """What is wrong with skinning matrices (poses, bones, 3, 4) in the order of Model.bones; None: nothing that shows."""
+    """What is wrong with skinning matrices (poses, joints, 3, 4) in the order of Model.joints; None: nothing that shows."""
     chosen = np.unique(np.linspace(0, len(poses) - 1, _POSES).astype(int)) if len(poses) else []
-    given = np.asarray(poses, np.float64)[chosen]
+    given = model._by_bone(poses[chosen]).astype(np.float64)
     joints = _Joints(model)
     if len(joints.child) < _JOINTS_MIN or not len(given):
         return None

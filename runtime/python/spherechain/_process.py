@@ -17,7 +17,7 @@ Progress = Callable[[float, float], Any]  #: called with how much is done, and o
 
 _STEP = re.compile(r"(\d+) of (\d+)")
 _MESSAGES = ("error", "warning", "note")
-_GRACE = 0.1  # seconds from the wish to end to the end
+_TERMINATION = 0.1  # seconds that a process has to end itself, before it is killed
 
 
 class Ended(NamedTuple):
@@ -65,7 +65,7 @@ def end(process: subprocess.Popen) -> None:
         return
     process.terminate()
     try:
-        process.wait(_GRACE)
+        process.wait(_TERMINATION)
     except subprocess.TimeoutExpired:
         process.kill()
         process.wait()
