@@ -36,15 +36,18 @@ class Server(unittest.TestCase):
         (self.root / "arm.urdf").write_text(ARM)
         (self.root / "fold.csv").write_text(FOLD)
         (self.root / "out").symlink_to("/tmp")
-        self.server = subprocess.Popen([sys.executable, "-m", "spherechain.mcp", "--root", self.root, "--tool", TOOL],
-                                       stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-        self.addCleanup(self.close)
         self.number, self.said = 0, []
+        self.start(TOOL)
 
-    def close(self):
-        self.server.stdin.close()
-        self.assertEqual(self.server.wait(2), 0)
-        self.server.stdout.close()
+    def start(self, tool):
+        self.server = subprocess.Popen([sys.executable, "-m", "spherechain.mcp", "--root", self.root, "--tool", tool],
+                                       stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self.addCleanup(self.close, self.server)
+
+    def close(self, server):
+        server.stdin.close()
+        self.assertEqual(server.wait(5), 0)
+        server.stdout.close()
 
     def send(self, line):
         self.server.stdin.write((line if isinstance(line, bytes) else json.dumps(line).encode()) + b"\n")
@@ -143,9 +146,12 @@ class Server(unittest.TestCase):
         self.assertEqual((self.root / "arm.json").read_bytes(), before)
 
     def test_a_cancelled_call_ends_its_process_and_is_not_answered(self):
-        os.mkfifo(self.root / "slow.obj")  # the tool would wait for it
+        slow = self.root / "slow"
+        slow.write_text("#!/bin/sh\nexec sleep 60\n")
+        slow.chmod(0o755)
+        self.start(slow)
         self.send({"jsonrpc": "2.0", "id": "slow", "method": "tools/call",
-                   "params": {"name": "play", "arguments": {"character": "arm.urdf", "motion": "slow.obj"}, "_meta": MODERN}})
+                   "params": {"name": "play", "arguments": {"character": "arm.urdf"}, "_meta": MODERN}})
         self.wait_for(lambda: self.children())
         self.send({"jsonrpc": "2.0", "method": "notifications/cancelled", "params": {"requestId": "slow"}})
         self.wait_for(lambda: not self.children())
