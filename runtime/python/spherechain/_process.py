@@ -4,14 +4,12 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import re
-import shutil
 import subprocess
 import threading
 from typing import Any, Callable, Iterator, List, NamedTuple, Optional, Sequence
 
-from ._tool import PathLike, ToolError
+from ._tool import PathLike, ToolError, program
 
 Progress = Callable[[float, float], Any]  #: called with how much is done, and of how much
 
@@ -33,7 +31,7 @@ def run_tool(arguments: Sequence[str], tool: Optional[PathLike] = None, fine: Se
     fine: exit codes besides 0 that are no ToolError. progress: called when the tool says how far it is, every ten seconds.
     started: gets the process, to end it from another thread.
     """
-    with _process([_program(tool), *arguments]) as process:
+    with _process([program(tool), *arguments]) as process:
         started(process)
         lines: List[str] = []
         reader = threading.Thread(target=_read, args=(process.stderr, lines, progress), daemon=True)
@@ -82,12 +80,3 @@ def _read(stream: Any, lines: List[str], progress: Optional[Progress]) -> None:
             if steps and progress:
                 done = sum(min(share / max(total, 1), 1) for share, total in steps[1:2])
                 progress(steps[0][0] + done, steps[0][1])
-
-
-def _program(tool: Optional[PathLike]) -> str:
-    program = os.fspath(tool) if tool is not None else os.environ.get("SPHERECHAIN_TOOL") or "spherechain"
-    found = shutil.which(program)
-    if found is None:
-        raise FileNotFoundError(f"{program}: no such program. Pass tool=PATH, set SPHERECHAIN_TOOL, or put spherechain "
-                                "on the PATH (cmake --build --preset release --target spherechain)")
-    return found

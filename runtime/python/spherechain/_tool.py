@@ -39,7 +39,8 @@ def bake(path: PathLike, output: Optional[PathLike] = None, *, tool: Optional[Pa
 
     output: the .sphc file to write; None: none is kept. settings: keys of docs/settings.md (spheres=40, body="biped",
     extremities=False, roles={...}), or the options profile="paper", preview=FILE (a .glb to write) and force=True (replace
-    a file of another kind). tool: path of the tool; else $SPHERECHAIN_TOOL, or `spherechain` on the PATH.
+    a file of another kind). tool: path of the tool; else $SPHERECHAIN_TOOL, the one inside the package, or `spherechain` on
+    the PATH.
 
     ToolError: it says why. A target that was missed is no error: it stands in report["missed_targets"].
     """
@@ -83,13 +84,21 @@ def _options(options: Dict[str, Any]) -> List[str]:
     return out
 
 
-def _run(tool: Optional[PathLike], arguments: List[str], fine: int) -> None:
-    program = os.fspath(tool) if tool is not None else os.environ.get("SPHERECHAIN_TOOL") or "spherechain"
-    found = shutil.which(program)
+def program(tool: Optional[PathLike] = None) -> str:
+    """The path of the tool, as bake() looks for it."""
+    inside = Path(__file__).with_name("tool") / "bin" / "spherechain"
+    name = os.environ.get("SPHERECHAIN_TOOL") or (str(inside) if inside.exists() else "spherechain")
+    name = name if tool is None else os.fspath(tool)
+    found = shutil.which(name)
     if found is None:
-        raise FileNotFoundError(f"{program}: no such program. Pass tool=PATH, set SPHERECHAIN_TOOL, or put spherechain "
+        raise FileNotFoundError(f"{name}: no such program. Pass tool=PATH, set SPHERECHAIN_TOOL, or put spherechain "
                                 "on the PATH (cmake --build --preset release --target spherechain)")
+    return found
+
+
+def _run(tool: Optional[PathLike], arguments: List[str], fine: int) -> None:
+    found = program(tool)
     done = subprocess.run([found, *arguments], capture_output=True, text=True, errors="replace", check=False)
     if done.returncode not in (0, fine):
-        message = done.stderr.strip() or f"{program} ended with {done.returncode}"
+        message = done.stderr.strip() or f"{found} ended with {done.returncode}"
         raise ToolError(message.replace("spherechain: error: ", "", 1), done.returncode)
