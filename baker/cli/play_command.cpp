@@ -96,7 +96,9 @@ ExitCode write_palettes(const AnimatedAsset& animated, std::optional<Responder>&
     }
   }
   file.finish();
-  say("{} frames of {} joints\nwrote {}\n", animated.frame_count(), animated.asset()->bone_count(), options.palettes);
+  const int frames = animated.frame_count();
+  say("{} frame{} of {} joints\nwrote {}\n", frames, frames == 1 ? "" : "s", animated.asset()->bone_count(),
+      options.palettes);
   return ExitCode::kDone;
 }
 

@@ -108,7 +108,7 @@ std::string allow_slides(const std::vector<PosedClip>& clips, Colliders& collide
     }
     if (farthest <= kStays * colliders.height) continue;
     colliders.bodies[b].slide = farthest;
-    names.push_back(fmt::format("{} ({:.0f} mm)", colliders.bodies[b].name, 1000 * farthest));
+    names.push_back(fmt::format("{} ({:.1f} mm)", colliders.bodies[b].name, 1000 * farthest));
   }
   if (names.empty()) return {};
   return fmt::format("clips move parts in those that they hang on, so these slide, too: {}", fmt::join(names, ", "));

@@ -97,7 +97,7 @@ class Motions(unittest.TestCase):
             os.mkfifo(pipe)  # the tool waits for an asset that nobody writes
             with self.assertRaises(KeyboardInterrupt):
                 _process.run_tool(["inspect", os.fspath(pipe)], TOOL, started=interrupt)
-        self.assertLess(time.monotonic() - times[0], 0.3)
+        self.assertLess(time.monotonic() - times[0], 1)  # 0.3 on a machine that does nothing else
         self.assertIsNotNone(processes[0].returncode)
 
 

@@ -8,7 +8,6 @@ import contextlib
 import json
 import os
 import re
-import shutil
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
@@ -98,6 +97,8 @@ def _name(call: "Call", path: str) -> str:
 def _output(call: "Call", arguments: Dict[str, Any]) -> Iterator[Tuple[Path, List[str]]]:
     """A folder to write into, and a list that gets the names of what was written there when it goes to its place."""
     target = _inside(call, arguments["output"])
+    if target == call.root:
+        raise Refused("output: name a file or a folder below the root folder")
     if not target.parent.is_dir():
         raise Refused(f"{arguments['output']}: there is no folder {target.parent.name}")
     _check_free(call, [target], arguments)
@@ -110,8 +111,6 @@ def _output(call: "Call", arguments: Dict[str, Any]) -> Iterator[Tuple[Path, Lis
         if call.is_cancelled:
             raise Refused("cancelled")
         for file, place in zip(found, places):
-            if place.is_dir() and not place.is_symlink():
-                shutil.rmtree(place)
             os.replace(file, place)
             written.append(_name(call, os.fspath(place)))
 
@@ -120,8 +119,8 @@ def _check_free(call: "Call", places: List[Path], arguments: Dict[str, Any]) -> 
     for place in places:
         if os.path.lexists(place) and not arguments.get("overwrite", False):
             raise Refused(f"{_name(call, os.fspath(place))}: is there already. Name another file, or pass overwrite=true")
-        if place.is_dir() and not (place / ".spherechain").exists() and any(place.iterdir()):
-            raise Refused(f"{_name(call, os.fspath(place))}: is a folder that spherechain did not write")
+        if place.is_dir():
+            raise Refused(f"{_name(call, os.fspath(place))}: is a folder, which is not replaced. Name another")
 
 
 def _options(arguments: Dict[str, Any], **names: str) -> List[str]:
