@@ -30,7 +30,7 @@ struct InspectOptions {
 ExitCode run_inspect(const InspectOptions& options);
 
 struct PlayOptions {
-  std::string asset, source, json;
+  std::string asset, source, json, palettes;
   MotionChoice motion;
   FrameChoice frames;
   std::string radius = "detect", backend = "auto";

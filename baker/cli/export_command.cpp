@@ -11,6 +11,7 @@
 #include "baker/export/formats.h"
 #include "baker/export/glb_json.h"
 #include "baker/export/ignore_by_filter.h"
+#include "baker/export/joint_tables.h"
 #include "baker/import/import.h"
 #include "baker/mesh/error.h"
 #include "baker/os/written_file.h"
@@ -31,6 +32,8 @@ struct ExportFormat {
   std::vector<std::string> endings;  // of its file
   Export (*of_colliders)(const Colliders&);
   Export (*of_source)(const Colliders&, const SourceGlb&);  // of a format that is written into the source
+  // The clips of a format that has joints.
+  std::vector<ExportFile> (*of_clips)(const Colliders&, const std::vector<PosedClip>&) = nullptr;
 };
 
 const ExportFormat kExportFormats[] = {
@@ -38,8 +41,8 @@ const ExportFormat kExportFormats[] = {
     {"vrm", "capsules", {".vrm", ".glb"}, nullptr, export_vrm},
     {"khr", "cones", {".glb", ".vrm"}, nullptr, export_khr},
     {"omi", "cones", {".glb", ".vrm"}, nullptr, export_omi},
-    {"mjcf", "capsules", {".xml", ".mjcf"}, export_mjcf, nullptr},
-    {"urdf", "spheres", {".urdf", ".xml"}, export_urdf, nullptr},
+    {"mjcf", "capsules", {".xml", ".mjcf"}, export_mjcf, nullptr, mjcf_joint_tables},
+    {"urdf", "spheres", {".urdf", ".xml"}, export_urdf, nullptr, urdf_joint_tables},
     {"xrdf", "spheres", {".xrdf", ".yaml", ".yml"}, export_xrdf, nullptr},
     {"curobo", "spheres", {".yml", ".yaml"}, export_curobo, nullptr},
     {"usd", "cones", {".usda", ".usd"}, export_usd, nullptr},
@@ -156,14 +159,22 @@ ExitCode run_export(const ExportOptions& options) {
   const std::string shape = options.volumes.empty() ? format.volumes : options.volumes;
   Colliders colliders = fit_volumes(asset, volume_shape(shape), options.at_most);
   if (filter) ignore_by_filter(*filter, colliders);
+  std::vector<PosedClip> clips;
+  if (animated && format.of_clips != nullptr) clips = posed_clips(*animated, colliders);
+  const std::string slides = allow_slides(clips, colliders);
   Export made = format.of_source != nullptr ? format.of_source(colliders, source) : format.of_colliders(colliders);
+  if (!slides.empty()) made.notes.push_back(slides);
+  if (format.of_clips != nullptr) {
+    for (ExportFile& table : format.of_clips(colliders, clips)) made.files.push_back(std::move(table));
+  }
   for (std::size_t i = 0; i < made.files.size(); ++i) {
     const std::string& ending = made.files[i].ending;
     name_output(made.files[i].bytes, made.stem_mark, options.output);
     if (ending.empty()) continue;
     fs::path name = options.output;
     ending.front() == '.' ? name.replace_extension(ending) : name.replace_filename(ending);
-    outputs.push_back({"the file beside it", name.string(), FileKind::kColliders});
+    const FileKind beside = name.extension() == ".csv" ? FileKind::kTable : FileKind::kColliders;
+    outputs.push_back({"the file beside it", name.string(), beside});
   }
   check_outputs(inputs, outputs, force);
   for (std::size_t i = 0; i < outputs.size(); ++i) write_atomically(outputs[i].path, made.files[i].bytes);

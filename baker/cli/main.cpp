@@ -204,7 +204,10 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   play_command->add_flag("--contacts", play.contacts, "List the triangles that intersect in the JSON, too");
   add_respond(*play_command, play.respond, play.ahead);
-  add_output(*play_command, "--json", play.json, "JSON file to write");
+  CLI::Option* play_json = add_output(*play_command, "--json", play.json, "JSON file to write");
+  add_output(*play_command, "--palettes", play.palettes,
+             "The skinning matrices of every frame to write (.npz), in place of looking for contacts")
+      ->excludes(play_json);
   play_command->callback([&] { run = [&] { return run_play(play); }; });
 
   ValidateOptions validate;

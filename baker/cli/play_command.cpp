@@ -18,6 +18,7 @@
 #include "baker/play/responder.h"
 #include "baker/play/target.h"
 #include "baker/report/collider_report.h"
+#include "baker/report/palette_file.h"
 #include "baker/report/part_contacts.h"
 #include "baker/report/parts.h"
 #include "baker/report/play_frames.h"
@@ -84,25 +85,44 @@ std::string frames_text(const AnimatedAsset& animated) {
   return clips > 1 ? fmt::format("{} clips, {} frames\n", clips, animated.frame_count()) : std::string();
 }
 
+ExitCode write_palettes(const AnimatedAsset& animated, std::optional<Responder>& responder,
+                        const PlayOptions& options) {
+  PaletteFile file(options.palettes, animated);
+  {
+    Progress progress("play " + options.asset + ":");
+    for (int i = 0; i < animated.frame_count(); ++i) {
+      progress.show(fmt::format("frame {} of {}", i + 1, animated.frame_count()));
+      file.add(i, responder ? responder->respond(i) : animated.deformation(i));
+    }
+  }
+  file.finish();
+  const int frames = animated.frame_count();
+  say("{} frame{} of {} joints\nwrote {}\n", frames, frames == 1 ? "" : "s", animated.asset()->bone_count(),
+      options.palettes);
+  return ExitCode::kDone;
+}
+
 }  // namespace
 
 ExitCode run_play(const PlayOptions& options) {
   check_outputs(with_motion(with_source({{"ASSET", options.asset}}, "--source", options.source), options.motion),
-                {{"--json", options.json, FileKind::kJson}}, Force::kNone);
+                {{"--json", options.json, FileKind::kJson}, {"--palettes", options.palettes, FileKind::kPalettes}},
+                Force::kNone);
   const bool on_cuda = options.backend == "cuda";
   const Target target = choose_target(on_cuda ? "auto" : options.backend);
   const Radius radius = options.radius == "fit" ? SC_RADIUS_FIT : SC_RADIUS_DETECT;
   AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
   if (options.continuous) look_between(animated, options.asset);
   animated.check_clusters();
+  std::optional<Responder> responder;
+  if (options.respond) responder.emplace(animated, target, options.ahead);
+  if (!options.palettes.empty()) return write_palettes(animated, responder, options);
   CudaFrames cuda;
   if (on_cuda) cuda = play_on_cuda(animated, radius);
   Player player(animated.asset(), radius, target);
   PartContacts contacts(animated);
   std::vector<HiddenJoints> hidden(animated.clips().size(), HiddenJoints(animated));  // of each clip
   Tally tally;
-  std::optional<Responder> responder;
-  if (options.respond) responder.emplace(animated, target, options.ahead);
   const char* const refit = refit_name(animated.asset()->refit_rule());
   const ColliderAlarms alarms = collider_alarms_of(animated);
   std::optional<PlayFile> file;

@@ -42,7 +42,8 @@ struct MjcfWriter {
   const Colliders& colliders;
   std::vector<std::string> names;
   std::vector<SolidMass> masses;
-  std::string out;
+  std::string spring = {};  // of joints that slide: it holds parts together while the figure falls
+  std::string out = {};
 
   void body(std::size_t i, int depth) {
     const ColliderBody& one = colliders.bodies[i];
@@ -51,6 +52,12 @@ struct MjcfWriter {
     const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
     out += fmt::format("{}<body name=\"{}\" pos=\"{}\" quat=\"{}\">\n", indent, names[i], xml_numbers(at.translation()),
                        mjcf_quaternion(Eigen::Quaterniond(at.linear())));
+    for (const char axis : std::string(one.parent < 0 || one.slide == 0 ? "" : "xyz")) {
+      const int number = axis - 'x';
+      out +=
+          fmt::format("{}  <joint type=\"slide\" name=\"{}_t{}\" axis=\"{}\" range=\"{} {}\" {}/>\n", indent, names[i],
+                      axis, xml_numbers(Vec3::Unit(number)), xml_number(-one.slide), xml_number(one.slide), spring);
+    }
     const char* joint = one.parent < 0 ? "<freejoint name=\"" : "<joint type=\"ball\" name=\"";
     out += indent + "  " + joint + names[i] + "\"/>\n";
     const SolidMass& mass = masses[i];
@@ -88,11 +95,14 @@ Eigen::AlignedBox3d bounds_of(const Colliders& colliders) {
 Export export_mjcf(const Colliders& given) {
   Export made;
   const Colliders colliders = with_balls(given, is_of_mujoco, made.notes);
-  MjcfWriter writer{colliders, link_names(colliders), masses_of(colliders), {}};
+  MjcfWriter writer{colliders, link_names(colliders), masses_of(colliders)};
   double mass = 0;
   for (const SolidMass& one : writer.masses) mass += one.kilograms;
   const double height = std::max(colliders.height, 1e-3);
   const double inertia = mass * height * height;
+  constexpr double kSpringRate = 63;  // radians a second, ten swings of the whole figure
+  writer.spring = fmt::format("stiffness=\"{}\" damping=\"{}\"", xml_number(mass * kSpringRate * kSpringRate),
+                              xml_number(2 * mass * kSpringRate));
   const Eigen::AlignedBox3d bounds = bounds_of(colliders);
   const Vec3 above(bounds.center().x(), bounds.center().y(), bounds.max().z() + 2 * height);
   writer.out = fmt::format(

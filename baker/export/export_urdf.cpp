@@ -126,7 +126,6 @@ std::string urdf_of(const Colliders& colliders) {
       for (const Volume& volume : colliders.bodies[body].volumes) out += urdf_collision(volume);
       ++body;
     }
-    const double reach = joint.slides ? 10 * height : std::numbers::pi;
     out += fmt::format(
         "  </link>\n"
         "  <joint name=\"{}\" type=\"{}\">\n"
@@ -134,7 +133,7 @@ std::string urdf_of(const Colliders& colliders) {
         "    <limit lower=\"{}\" upper=\"{}\" effort=\"1000\" velocity=\"20\"/><dynamics damping=\"{}\"/>\n"
         "  </joint>\n",
         joint.name, joint.slides ? "prismatic" : "revolute", joint.parent, joint.child, urdf_origin(joint.origin),
-        xml_numbers(joint.axis), xml_number(-reach), xml_number(reach), joint.slides ? "0" : damping);
+        xml_numbers(joint.axis), xml_number(-joint.reach), xml_number(joint.reach), joint.slides ? "0" : damping);
   }
   return out + "</robot>\n";
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <numbers>
 
 #include "baker/export/names.h"
 #include "baker/export/solid_grid.h"
@@ -115,8 +116,10 @@ std::vector<RobotJoint> robot_joints(const Colliders& colliders) {
     std::string last = parent < 0 ? kBaseLink : names[static_cast<std::size_t>(parent)];
     Eigen::Isometry3d origin = rest_in_parent(colliders, i);
     if (parent < 0) origin = Eigen::Isometry3d(to_z_up(colliders)) * origin;
+    const double slide = parent < 0 ? 10 * std::max(colliders.height, 1e-3) : colliders.bodies[i].slide;
     const auto add = [&](const char* motion, int axis, bool slides, bool is_last) {
       RobotJoint joint;
+      joint.reach = slides ? slide : std::numbers::pi;
       joint.name = names[i] + "_" + motion;
       joint.parent = last;
       joint.child = last = is_last ? names[i] : joint.name + "_link";
@@ -126,8 +129,8 @@ std::vector<RobotJoint> robot_joints(const Colliders& colliders) {
       origin.setIdentity();
       out.push_back(std::move(joint));
     };
-    if (parent < 0) {
-      // It slides along the world's axes and turns around its own.
+    if (slide > 0) {
+      // It slides along the axes of the world, or of its parent, and turns around its own.
       const Eigen::Isometry3d place = origin;
       origin.linear().setIdentity();
       add("tx", 0, true, false);

@@ -39,10 +39,11 @@ std::vector<std::string> link_names(const Colliders& colliders);
 std::string robot_name(const Colliders& colliders);
 
 // A joint of one axis. Ball joints become three of these with links without volumes between them, and what hangs on
-// nothing hangs on kBaseLink by six.
+// nothing hangs on kBaseLink by six. A body that slides in its parent has six, too.
 struct RobotJoint {
   std::string name, parent, child;
   bool slides = false;  // prismatic; otherwise revolute
+  double reach = 0;     // from -reach to reach, metres or radians
   Vec3 axis;
   Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  // the child's frame in that of the parent, at 0
 };

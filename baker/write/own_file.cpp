@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "baker/os/written_file.h"
+#include "baker/write/npz.h"
 
 namespace spherechain::baker {
 namespace {
@@ -62,9 +63,12 @@ bool is_own_text(const std::string& text, FileKind kind) {
       return text.starts_with("<!doctype html>") && has("<meta name=\"generator\" content=\"spherechain\">");
     case FileKind::kColliders:
       return is_json || has("Written by spherechain") || has("doc = \"spherechain: colliders of ");
+    case FileKind::kPalettes:
+      return is_own_npz(text);
     case FileKind::kGlb:
     case FileKind::kBvh:
     case FileKind::kFbx:
+    case FileKind::kTable:
       break;
   }
   return false;
@@ -90,6 +94,10 @@ const char* kind_text(FileKind kind) {
       return "a BVH file";
     case FileKind::kFbx:
       return "an FBX file";
+    case FileKind::kPalettes:
+      return "a file of palettes";
+    case FileKind::kTable:
+      return "a table";
     case FileKind::kColliders:
       break;
   }

@@ -1,4 +1,5 @@
 // MJCF in MuJoCo: it compiles without a word, poses are ours, overlapping parts are ours, and the figure falls down.
+import fs from 'node:fs'
 import loadMujoco from 'mujoco-js'
 import * as r from './robots.mjs'
 
@@ -61,6 +62,44 @@ function freed(text) {
     else if (!/joint/.test(line)) open.at(-1).lines.push(line)
   }
   return out.join('\n')
+}
+
+// The joint angles that the export writes beside it, for each clip of a character that has some.
+const walker = r.withClips(one), tables = walker.tables('mjcf', 'clips.xml')
+if (tables.length > 0) {
+  const { model, data } = load(fs.readFileSync('clips.xml', 'utf8'))
+  const bodyIds = walker.identifiers.map(name => mujoco.mj_name2id(model, BODY, name)), address = name => {
+    const free = /^(.*)_([xyz]|q[wxyz])$/.exec(name), slide = mujoco.mj_name2id(model, JOINT, name)
+    if (slide >= 0) return model.jnt_qposadr[slide]
+    const id = mujoco.mj_name2id(model, JOINT, free[1])
+    return model.jnt_qposadr[id] + (free[2].length === 1 ? 'xyz'.indexOf(free[2]) : 'wxyz'.indexOf(free[2][1]) + (model.jnt_type[id] === 0 ? 3 : 0))
+  }
+  let farthest = 0, widest = 0, frames = 0
+  for (const { clip, columns, rows } of tables) {
+    const at = columns.map(address), played = walker.all_frames().filter(pose => pose.clip === clip)
+    check(rows.length === played.length, `the table of ${clip} has a row for each frame`)
+    rows.forEach(([seconds, ...values], f) => {
+      check(Math.abs(seconds - played[f].seconds) < 1e-4, 'rows have the times of frames')
+      values.forEach((value, k) => { data.qpos[at[k]] = value })
+      placed({ model, data }, bodyIds).forEach((theirs, i) => {
+        const { position, rotation } = played[f].bodies[i]
+        const ours = { position: r.turn(walker.upright, position), rotation: r.multiply(walker.upright, rotation) }
+        farthest = Math.max(farthest, r.distance(theirs.position, ours.position))
+        widest = Math.max(widest, r.angleBetween(theirs.rotation, ours.rotation))
+      })
+      frames++
+    })
+  }
+  console.log(`joint angles of ${tables.length} clips, ${frames} frames: at worst ${(1000 * farthest).toFixed(3)} mm and ` +
+    `${(widest * 180 / Math.PI).toFixed(4)} degrees from the clip`)
+  // The figure falls: what slides in its parent is held by a spring.
+  mujoco.mj_resetData(model, data)
+  const height = walker.posed.height, seconds = 2 * Math.sqrt(Math.max(1, height / 1.7))
+  for (let i = 0; i < seconds / model.opt.timestep; i++) mujoco.mj_step(model, data)
+  const slid = [...model.jnt_type].map((type, j) => (type === 2 ? Math.abs(data.qpos[model.jnt_qposadr[j]]) : 0))
+  console.log(`after ${seconds.toFixed(1)} s of falling parts have slid by up to ${(100 * Math.max(...slid) / height).toFixed(2)} % of the height`)
+  check(Math.max(...slid) < 0.03 * height, 'springs hold the parts together')
+  check(farthest < 0.001 && widest < 0.1 * Math.PI / 180, 'with their joint angles bodies stand as in the clips')
 }
 
 const free = new r.Verdicts('bodies free'), tree = new r.Verdicts('bodies jointed')

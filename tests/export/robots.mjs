@@ -6,8 +6,8 @@ const models = '/usr/share/assimp/models'
 
 // Arguments of each script: TOOL POSED_COLLIDERS [ASSET SOURCE [SHAPE AT_MOST [MOTION]]]. Without an asset the human of
 // assimp's models, as the tool's own preview writes it, boxing.
-export function character(shapeOfFormat, poses) {
-  const [tool, posedColliders, asset, source, shape, atMost, motion] = process.argv.slice(2)
+export function character(shapeOfFormat, poses, args = process.argv.slice(2)) {
+  const [tool, posedColliders, asset, source, shape, atMost, motion] = args
   const run = (...args) => execFileSync(args[0], args.slice(1), { encoding: 'utf8', maxBuffer: 1 << 30 })
   const one = { tool, run, asset, source, shape: shape ?? shapeOfFormat, atMost: atMost ?? '0', motion }
   if (!asset) {
@@ -26,6 +26,19 @@ export function character(shapeOfFormat, poses) {
     for (const line of out.split('\n')) if (line.startsWith('note:')) console.log(line)
     return fs.readFileSync(file, 'utf8')
   }
+  // The CSVs that an export writes of the source's clips.
+  one.tables = (format, file) => {
+    const stem = file.replace(/\.[^.]*$/, '.')
+    for (const old of fs.readdirSync('.')) if (old.startsWith(stem)) fs.rmSync(old)
+    run(tool, 'export', one.asset, '--to', format, '-o', file, '--source', one.source, '--volumes', one.shape)
+    const clips = [...new Set(one.all_frames().map(pose => pose.clip))]
+    return fs.readdirSync('.').filter(name => name.startsWith(stem) && name.endsWith(`.${format}.csv`)).map(name => {
+      const [header, ...lines] = fs.readFileSync(name, 'utf8').trim().split('\n')
+      const clip = clips.find(clip => clip.replace(/[^A-Za-z0-9-]/g, '_') === name.slice(stem.length, -5 - format.length))
+      return { clip, columns: header.split(',').slice(1), rows: lines.map(line => line.split(',').map(Number)) }
+    })
+  }
+  one.all_frames = () => one.every ??= JSON.parse(run(posedColliders, one.asset, one.source, one.shape, one.atMost, '0')).poses
   one.json = JSON.parse(one.export('capsules.json', 'robot.capsules.json'))
   one.identifiers = one.json.bodies.map(body => body.part.replace(/[^A-Za-z0-9]/g, '_'))
   // Rows: where forward, left and up of the character go to X, Y and Z.
@@ -36,6 +49,14 @@ export function character(shapeOfFormat, poses) {
     if (i < j && !ignored.has(a.part + '|' + b.part)) one.pairs.push([i, j])
   }))
   return one
+}
+
+// The character whose clips are played: that of the arguments, else one of assimp's models that has a clip.
+export function withClips(one) {
+  if (process.argv[4]) return one
+  const [tool, posedColliders] = process.argv.slice(2), source = models + '/X/Testwuson.X'
+  one.run(tool, 'bake', source, '-o', 'walker.sphc')
+  return character('spheres', 1, [tool, posedColliders, 'walker.sphc', source])
 }
 
 // Quaternions x y z w.

@@ -8,13 +8,14 @@ import tempfile
 import threading
 import time
 import unittest
+import warnings
 from pathlib import Path
 
 import numpy as np
 import spherechain
 from spherechain import _native
 
-from palettes import heap, rest_pose, rotations
+from palettes import heap, random_poses, rest_pose, rotations
 from paths import DOLL, PAPER_DOLL
 
 
@@ -82,9 +83,36 @@ class Refusals(unittest.TestCase):
         name = re.escape(self.model.bones[3].name)
         self.refuses(ValueError, f'^bone "{name}": its matrix is not that of .*bind pose', self.model.check_rest, moved)
         bind = np.stack([bone.inverse_bind for bone in self.model.bones])  # world matrices, not skinning matrices
-        self.refuses(ValueError, '^bone "', self.model.check_rest, bind)
+        self.refuses(ValueError, '^bone ".*; they are', self.model.check_rest, np.linalg.inv(
+            np.concatenate([bind, np.broadcast_to([[0, 0, 0, 1]], (len(bind), 1, 4))], 1)).astype(np.float32))
         self.refuses(ValueError, "transposed", self.model.check_rest, bones.swapaxes(2, 3))
         self.refuses(ValueError, "bones has the shape", self.model.check_rest, self.rest[1:])
+
+    def test_matrices_that_tear_the_body_in_any_pose(self):
+        def whole(matrices):
+            return np.concatenate([matrices, np.broadcast_to([[[0, 0, 0, 1]]], (*matrices.shape[:2], 1, 4))], 2)
+
+        poses = whole(random_poses(self.model, 8, 60).astype(float))
+        binds = whole(np.stack([bone.inverse_bind for bone in self.model.bones])[None].astype(float))
+        world = poses @ np.linalg.inv(binds)
+        scaled = np.diag([3, -3, 3, 1]).astype(float)
+        scaled[:3, 3] = (5, 6, 7)
+        for right in (poses, scaled @ poses, poses[:1], np.tile(scaled, (1, len(self.model.bones), 1, 1))):
+            self.model.check_pose(right.astype(np.float32))
+        centimetres = poses.copy()
+        centimetres[..., :3, 3] *= 100
+        for wrong, text in ((world, "they are world matrices"), (world[:1], "they are world matrices"),
+                            (poses.swapaxes(2, 3), "transposed"), (poses.swapaxes(2, 3)[:, :, :3], "transposed"),
+                            (binds @ world, "on the wrong side"), (centimetres, "in centimetres, and the asset in metres"),
+                            (poses[:, ::-1], "another order")):
+            with self.subTest(text):
+                self.refuses(ValueError, text, self.model.check_pose, wrong.astype(np.float32))
+        with self.assertWarnsRegex(spherechain.MatrixWarning, "doll.*they are world matrices"):
+            self.model.penetrations(world.astype(np.float32)[:, :, :3])
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # it is said once; right poses say nothing
+            self.model.penetrations(world.astype(np.float32)[:1])
+            spherechain.Model(DOLL).sphere_energy(poses.astype(np.float32))
 
     def test_an_interrupt_ends_a_batch(self):
         poses = np.repeat(heap(self.model)[None], 400, 0)

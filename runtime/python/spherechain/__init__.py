@@ -10,12 +10,13 @@ For PyTorch: spherechain.torch.
 
 from ._answers import (CLASSES, CONTACT_ROW, FAULTS, PART_CONTACT, PENETRATION, SPHERE_PAIR, STEP, TRANSFORM, TRIANGLE_PAIR,
                        Contacts, PartContact, Penetration, Penetrations, Rule, Step, Steps)
-from ._model import Bone, Model, Part, Posed, Query
+from ._model import Bone, MatrixWarning, Model, Part, Posed, Query
+from ._motion import Motion, load_motion
 from ._response import Ground, Responded, Response, ResponseState
 from ._tool import Baked, ToolError, bake, check
 
 from ._native import VERSION as __version__
 
-__all__ = ["Baked", "Bone", "CLASSES", "CONTACT_ROW", "Contacts", "FAULTS", "Ground", "Model", "PART_CONTACT", "PENETRATION",
+__all__ = ["Baked", "Bone", "CLASSES", "CONTACT_ROW", "Contacts", "FAULTS", "Ground", "MatrixWarning", "Model", "Motion", "PART_CONTACT", "PENETRATION",
            "Part", "PartContact", "Penetration", "Penetrations", "Posed", "Query", "Responded", "Response", "ResponseState",
-           "Rule", "SPHERE_PAIR", "STEP", "Step", "Steps", "TRANSFORM", "TRIANGLE_PAIR", "ToolError", "bake", "check"]
+           "Rule", "SPHERE_PAIR", "STEP", "Step", "Steps", "TRANSFORM", "TRIANGLE_PAIR", "ToolError", "bake", "check", "load_motion"]

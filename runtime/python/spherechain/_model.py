@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import os
-from typing import Any, NamedTuple, Optional, Sequence, Tuple, Union
+import warnings
+from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _native
+from . import _native, _pose_check, _table
 from ._answers import (CLASSES, FAULTS, PART_CONTACT, PENETRATION, SPHERE_PAIR, STEP, TRIANGLE_PAIR, Contacts, Penetrations,
                        Rule, Steps)
 
@@ -63,6 +64,10 @@ class Posed(NamedTuple):
     bones_before: Optional[NDArray[np.float32]] = None  #: of steps: where it comes from
     vertices: Optional[NDArray[np.float32]] = None  #: in place of bones
     morph_weights: Optional[NDArray[np.float32]] = None
+
+
+class MatrixWarning(UserWarning):
+    """The first poses that a model got are no skinning matrices of it: its answers mean nothing."""
 
 
 class Model:
@@ -119,6 +124,8 @@ class Model:
         except ValueError as error:
             raise ValueError(f"{name}: {error}") from None
         self._arguments = data, joints
+        self._is_looked_at: list = []
+        self._file = name if isinstance(source, (str, os.PathLike)) else None
         info = self._native.info()
         places = info.pop("joint_of_bone")
         self._joint_of_bone = np.array(places) if joints is not None else None
@@ -158,7 +165,26 @@ class Model:
         rows = np.asarray(bones)[..., 3:, :].reshape(-1, 4)
         for row in rows[(np.abs(rows - (0, 0, 0, 1)) > 1e-3).any(axis=1)][:1]:
             raise ValueError(f"bones: a last row is {row}, not [0 0 0 1]. Are the matrices transposed?")
-        self._native.check_rest(poses)
+        try:
+            self._native.check_rest(poses)
+        except ValueError as error:
+            mistake = _pose_check.find_mistake(self, poses)
+            raise ValueError(f"{error}; {mistake}" if mistake else str(error)) from None
+
+    def check_pose(self, bones: NDArray[np.float32]) -> None:
+        """Checks in any poses that your matrices are skinning matrices of this character.
+
+        bones: float32 (..., joints, 3, 4) or (..., joints, 4, 4). ValueError says what they are instead: world matrices,
+        transposed, in other units, in another order. It is known by bones that are torn apart, so a single wrong bone does
+        not show, nor does a body of fewer than four parts. The first poses that a model gets are checked by themselves,
+        with a MatrixWarning.
+        """
+        array = np.asarray(bones)
+        if array.shape[-2:] == (4, 4) and (array[..., 3, :3] != 0).any() and not (array[..., :3, 3] != 0).any():
+            raise ValueError("bones: they are transposed: a translation is the last column, not the last row")
+        mistake = _pose_check.find_mistake(self, self._poses(bones)[0])
+        if mistake:
+            raise ValueError(f"bones: {mistake}")
 
     def triangle(self, number: int) -> Optional[Tuple[int, int, int]]:
         """Body part, region and sphere of a triangle of the source; None: the skin leaves it out, as degenerate ones are."""
@@ -214,6 +240,18 @@ class Model:
         """
         found, batch, names = self._ask(_STEPS, (bones, None, None), other, threads, query, before=bones_before)
         return _nested([Steps(np.frombuffer(of[0], STEP), names) for of in found], batch)
+
+    def table(self, poses: Any, *, contacts: bool = False, progress: Optional[Callable[[int, int], Any]] = None,
+              threads: int = 0, **query: Any) -> Dict[str, np.ndarray]:
+        """One row for each penetration in each frame, as columns by name: for CSV, Parquet or pandas.
+
+        poses: what load_motion() gave, in which a fault stays one until it is clearly none, as in `play`; or an array
+        (frames, joints, 3, 4), of which each pose is measured alone. contacts: rows are contacts, not penetrations.
+        progress: called with frames done and all frames. threads: of an array and of contacts. query: keywords of Query,
+        and `other` where poses are an array. Lengths that end in _mm are in millimetres, others in the pose's units; a
+        volume that is not known is NaN.
+        """
+        return _table.table(self, poses, contacts, progress, threads, query)
 
     def bounds(self, bones: Any = None, *, vertices: Any = None, morph_weights: Any = None, threads: int = 1) -> np.ndarray:
         """A box that holds all of the skin for certain: float32 (..., 2, 3), its low corner and its high one."""
@@ -360,6 +398,7 @@ class Model:
             array = self._array("vertices", vertices, _SINGLE, (self.vertex_count, 3))
             return (None, (None, np.ascontiguousarray(array.reshape(-1, self.vertex_count, 3)), None)), array.shape[:-2]
         poses, batch = self._poses(bones)
+        self._look_once(poses)
         now = poses, None, self._morphs(morph_weights, batch)
         if before is None:
             return (None, now), batch
@@ -412,10 +451,23 @@ class Model:
     def _asset_poses(self, bones: Any, types: Any) -> Tuple[np.ndarray, Tuple[int, ...]]:
         """The same in the order of Model.bones. A bone without a joint has the identity."""
         poses, batch = self._poses(bones, types)
-        if self._joint_of_bone is not None:
-            rest = np.broadcast_to(np.eye(3, 4, dtype=poses.dtype), (len(poses), 1, 3, 4))
-            poses = np.ascontiguousarray(np.concatenate([poses, rest], 1)[:, self._joint_of_bone])
-        return poses, batch
+        self._look_once(poses)
+        return self._by_bone(poses), batch
+
+    def _by_bone(self, poses: np.ndarray) -> np.ndarray:
+        if self._joint_of_bone is None:
+            return poses
+        rest = np.broadcast_to(np.eye(3, 4, dtype=poses.dtype), (len(poses), 1, 3, 4))
+        return np.ascontiguousarray(np.concatenate([poses, rest], 1)[:, self._joint_of_bone])
+
+    def _look_once(self, poses: np.ndarray) -> None:
+        """Warns of the first poses if they are no skinning matrices."""
+        if self._is_looked_at or not len(poses):
+            return
+        self._is_looked_at.append(True)
+        mistake = _pose_check.find_mistake(self, poses)
+        if mistake:
+            warnings.warn(f"bones of {self.source_file}: {mistake}", MatrixWarning, stacklevel=2)
 
     def _by_joint(self, gradient: np.ndarray, batch: Tuple[int, ...]) -> np.ndarray:
         """From (poses, bones, 3, 4) to (..., joints, 3, 4)."""
@@ -445,9 +497,9 @@ class Model:
         if last != shape and (other is None or last != other):
             wanted = ", ".join(str(size) for size in shape)
             raise ValueError(f"{name} has the shape {array.shape}: pass ({'' if exact else '..., '}{wanted})")
-        is_wrong = ~(np.abs(array) <= _FAR)  # squares of more would overflow, and such spheres touch nothing
-        if is_wrong.any():
-            place = tuple(int(i) for i in np.argwhere(is_wrong)[0])
+        # Squares of more would overflow, and such spheres touch nothing. A NaN makes minimum and maximum one.
+        if array.size and not (-_FAR <= array.min() and array.max() <= _FAR):
+            place = tuple(int(i) for i in np.argwhere(~(np.abs(array) <= _FAR))[0])
             raise ValueError(f"{name}{list(place)} is {array[place]}: pass numbers up to {_FAR:g}")
         return array
 
