@@ -194,9 +194,13 @@ class Character:
         for at, parent in enumerate(self.parents):
             if parent >= 0:
                 local[:, at] = np.linalg.inv(self.pose[:, parent]) @ self.pose[:, at]
+        return np.concatenate([local, self.to_file()[:, None]], 1)
+
+    def to_file(self):
+        """From the armature's space to the file's, in each frame."""
         move = np.array(TO_GLTF) @ self.move
         move[:, :3] *= self.scale
-        return np.concatenate([local, move[:, None]], 1)
+        return move
 
     def write(self, path):
         """The character with its clip as a .glb."""
@@ -213,14 +217,18 @@ class Character:
             children.setdefault(parent if parent >= 0 else len(self.bones), []).append(at)
         for parent, below in children.items():
             file.gltf["nodes"][parent]["children"] = below
-        inverse = np.concatenate([np.linalg.inv(self.rest), np.eye(4)[None]])
+        bind = self.to_file()[0]  # the skin is written as it stands in the scene: so the tool names places in the scene
+        inverse = np.linalg.inv(np.concatenate([bind @ self.rest, bind[None]]))
         file.gltf["skins"] = [{"joints": nodes, "inverseBindMatrices": file.accessor(inverse.transpose(0, 2, 1), 5126, "MAT4")}]
-        meshes = [file.mesh(mesh["object"], 0, self.primitives(mesh)) for mesh in self.meshes]
+        meshes = [file.mesh(mesh["object"], 0, self.primitives(mesh, bind)) for mesh in self.meshes]
         file.gltf["scenes"] = [{"nodes": [nodes[-1]] + meshes}]
         file.clip(self.clip_name(), nodes, pose, self.fps)
         file.save(path)
 
-    def primitives(self, mesh):
+    def primitives(self, mesh, bind):
+        """One for each material."""
+        points = mesh["points"] @ bind[:3, :3].T + bind[:3, 3]
+        flipped = mesh["flipped"] != (np.linalg.det(bind[:3, :3]) < 0)
         slots = bpy.data.objects[mesh["object"]].material_slots
         for number in np.unique(mesh["materials"]):
             triangles = mesh["triangles"][mesh["materials"] == number]
@@ -229,10 +237,10 @@ class Character:
             material = slots[number].material if number < len(slots) else None
             mode = getattr(material, "blend_method", "OPAQUE")
             yield {
-                "positions": mesh["points"][used],
+                "positions": points[used],
                 "joints": padded(mesh["joints"][used]),
                 "weights": padded(mesh["weights"][used]),
-                "triangles": triangles[:, ::-1] if mesh["flipped"] else triangles,
+                "triangles": triangles[:, ::-1] if flipped else triangles,
                 "material": (material.name, {"OPAQUE": "OPAQUE", "CLIP": "MASK"}.get(mode, "BLEND")) if material else None,
             }
 

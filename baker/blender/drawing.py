@@ -17,7 +17,7 @@ class Contacts:
 
     def __init__(self, character, frames, parts):
         self.name, self.first, self.bones = character.name, character.first, character.bones
-        self.pose = character.pose
+        self.pose, self.move, self.scale = character.pose, character.move, character.scale
         self.inverse = np.linalg.inv(character.rest)
         meshes = character.meshes
         starts = np.cumsum([0] + [len(mesh["points"]) for mesh in meshes])
@@ -39,7 +39,7 @@ class Contacts:
         for one, other in found["pairs"]:
             groups[frozenset((self.part[one], self.part[other])) in faults].update((one, other))
         return {"faults": sorted(groups[True]), "touches": sorted(groups[False] - groups[True]),
-                "depths": [fault["points"] for fault in found["faults"]]}
+                "depths": np.array([fault["points"] for fault in found["faults"]]).reshape(-1, 3) / self.scale}
 
     def corners(self, triangles, frame):
         """Corners of triangles (n, 3, 3) in the armature's space, as its bones stood when it was checked."""
@@ -50,12 +50,16 @@ class Contacts:
         return moved[:, :3].reshape(-1, 3, 3)
 
     def holds(self, armature, frame):
-        """Whether the bones stand as they did when this frame was checked."""
+        """Whether the character stands as it did when this frame was checked."""
         bones = armature.pose.bones
         if not 0 <= frame - self.first < len(self.pose) or any(name not in bones for name in self.bones):
             return False
         now = np.array([bones[name].matrix for name in self.bones])
-        return np.abs(now - self.pose[frame - self.first]).max() < 1e-3 * max(np.abs(now).max(), 1e-9)
+        return close(now, self.pose[frame - self.first]) and close(np.array(armature.matrix_world), self.move[frame - self.first])
+
+
+def close(one, other):
+    return np.abs(one - other).max() < 1e-3 * np.abs(other).max()
 
 
 def show(contacts):
@@ -95,13 +99,12 @@ def draw():
             points = nearer(points, eye, region.is_perspective)
             fill(points, colour, "NONE", 0.3)
             fill(points, colour, "LESS_EQUAL", 0.85)
-        lines = np.array(found["depths"]).reshape(-1, 3)
-        if len(lines):
+        if len(found["depths"]):
             gpu.state.depth_test_set("NONE")
             gpu.state.line_width_set(3)
-            paint("LINES", lines, (*DEPTH, 1.0))
+            paint("LINES", found["depths"], (*DEPTH, 1.0))
             gpu.state.point_size_set(7)
-            paint("POINTS", lines, (*DEPTH, 1.0))
+            paint("POINTS", found["depths"], (*DEPTH, 1.0))
         gpu.state.depth_test_set("NONE")
         gpu.state.blend_set("NONE")
         gpu.state.line_width_set(1)

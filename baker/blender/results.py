@@ -37,14 +37,17 @@ def progress_line(line, names):
 
 
 def events(path, first):
-    """Events of `check --json`, as they begin; frames are those of the scene, in which the clip begins at `first`."""
+    """Faults and poke-through of `check --json`, and what else was found, in words. The clip begins at the frame `first`."""
     with open(path, encoding="utf-8") as file:
         checked = json.load(file)
     clip = checked["clips"][0]
     if clip.get("error"):
         raise ValueError(clip["error"])
-    found = []
+    found, others = [], 0
     for event in clip["events"]:
+        if event["class"] not in FAULTS + ("poke",):
+            others += 1
+            continue
         if event["class"] == "poke":
             text = f"{event['pieces'][0]} through {event['pieces'][1]}"
             size = f"{event['area_cm2']:.0f} cm2"
@@ -60,7 +63,7 @@ def events(path, first):
             "to": first + round(event["to"]),
             "worst": first + round(event["deepest"]),
         })
-    return found, [note for note in checked["notes"]]
+    return found, others, checked["notes"]
 
 
 def marker_name(event):

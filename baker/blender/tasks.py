@@ -52,8 +52,7 @@ def check(context, tool):
         job.tool([tool, "check", source, "-o", os.path.join(folder, "report"), "--fps", rate, "--json", found], good=(0, 6))
         return results.events(found, character.first)
 
-    events, notes = yield from follow(Job(look, names))
-    show_events(character, events, notes)
+    show_events(character, *(yield from follow(Job(look, names))))
 
     def places(job):
         asset, played = os.path.join(folder, "character.sphc"), os.path.join(folder, "play.json")
@@ -64,7 +63,7 @@ def check(context, tool):
     drawing.show((yield from follow(Job(places, names))))
 
 
-def show_events(character, events, notes):
+def show_events(character, events, others, notes):
     """Replaces the list, and the timeline markers that are ours."""
     shown = character.armature.spherechain
     shown.events.clear()
@@ -72,8 +71,8 @@ def show_events(character, events, notes):
         row = shown.events.add()
         row.name, row.size, row.kind = event["text"], event["size"], event["class"]
         row.first, row.last, row.worst = event["from"], event["to"], event["worst"]
-    shown.checked = f"{character.clip_name()}, frames {character.first}-{character.last}: " + (
-        f"{len(events)} event{'s' * (len(events) != 1)}" if events else "nothing found")
+    shown.checked = (f"{character.clip_name()}, frames {character.first}-{character.last}: {len(events)} faults, "
+                     f"{others} touches")
     shown.note = " ".join(notes)
     markers = character.scene.timeline_markers
     for marker in [marker for marker in markers if marker.name.startswith(results.PREFIX)]:
@@ -92,7 +91,7 @@ def fix(context, tool):
               {source: character.name})
     yield from follow(job)
     yield "making the new action"
-    said = new_action.from_mended(character, mended)
+    said = yield from new_action.from_mended(character, mended)
     outcomes = results.outcomes(os.path.join(report, "fix.json"))
     character.armature.spherechain.checked = f"{said}; {outcomes}"
 
