@@ -8,7 +8,7 @@ from gpu_extras.batch import batch_for_shader
 
 from . import results
 
-FAULT, TOUCH, DEPTH = (1.0, 0.12, 0.08), (1.0, 0.8, 0.1), (1.0, 1.0, 1.0)
+FAULT, INSIDE, TOUCH, DEPTH = (1.0, 0.1, 0.05), (0.75, 0.1, 0.9), (1.0, 0.8, 0.1), (1.0, 1.0, 1.0)
 shown = {}  # by the armature's name
 
 
@@ -30,16 +30,22 @@ class Contacts:
         part = results.parts_of_bones(self.bones, character.parents, parts)
         main = self.joints[np.arange(len(self.joints)), np.argmax(self.weights, 1)]
         self.part = [part[main[corner]] for corner in self.triangles[:, 0]]
-        self.frames = {frame: self.sorted(found) for frame, found in frames.items()}
+        _, weld = np.unique(np.round(self.points / np.ptp(self.points) * 1e5), axis=0, return_inverse=True)
+        self.surface = results.Surface(weld.reshape(-1)[self.triangles].tolist())
+        self.found, self.sorted = frames, {}
 
-    def sorted(self, found):
-        """Triangles of faults apart from those of touches and folds."""
-        faults = {frozenset(fault["parts"]) for fault in found["faults"]}
-        groups = {True: set(), False: set()}
-        for one, other in found["pairs"]:
-            groups[frozenset((self.part[one], self.part[other])) in faults].update((one, other))
-        return {"faults": sorted(groups[True]), "touches": sorted(groups[False] - groups[True]),
-                "depths": np.array([fault["points"] for fault in found["faults"]]).reshape(-1, 3) / self.scale}
+    def at(self, frame):
+        """Of a frame with contacts: triangles that are inside, of faults, and of touches and folds; the faults' depths."""
+        if frame not in self.sorted:
+            found = self.found[frame]
+            faults = {frozenset(fault["parts"]) for fault in found["faults"]}
+            groups = {True: set(), False: set()}
+            for one, other in found["pairs"]:
+                groups[frozenset((self.part[one], self.part[other])) in faults].update((one, other))
+            inside = results.swallowed_triangles(self.surface, self.part, found)
+            points = np.array([fault["points"] for fault in found["faults"]]).reshape(-1, 3) / self.scale
+            self.sorted[frame] = (sorted(inside), sorted(groups[True]), sorted(groups[False] - groups[True]), points)
+        return self.sorted[frame]
 
     def corners(self, triangles, frame):
         """Corners of triangles (n, 3, 3) in the armature's space, as its bones stood when it was checked."""
@@ -77,7 +83,7 @@ def state(armature, frame):
         return ""
     if not contacts.holds(armature, frame):
         return "The pose has changed: check again to see contacts" if 0 <= frame - contacts.first < len(contacts.pose) else ""
-    return "" if frame in contacts.frames else "No contact in this frame"
+    return "" if frame in contacts.found else "No contact in this frame"
 
 
 def draw():
@@ -85,26 +91,26 @@ def draw():
     frame, region = context.scene.frame_current, context.region_data
     for name, contacts in shown.items():
         armature = context.view_layer.objects.get(name)
-        found = contacts.frames.get(frame)
-        if armature is None or found is None or not armature.spherechain.draw or not contacts.holds(armature, frame):
+        if armature is None or frame not in contacts.found or not armature.spherechain.draw or not contacts.holds(armature, frame):
             continue
         world = np.array(armature.matrix_world)
         eye = np.array(region.view_matrix.inverted())
         gpu.state.blend_set("ALPHA")
         gpu.state.face_culling_set("NONE")
-        for triangles, colour in ((found["touches"], TOUCH), (found["faults"], FAULT)):
+        inside, faults, touches, depths = contacts.at(frame)
+        for triangles, colour in ((touches, TOUCH), (inside, INSIDE), (faults, FAULT)):
             if not triangles:
                 continue
             points = contacts.corners(triangles, frame).reshape(-1, 3) @ world[:3, :3].T + world[:3, 3]
             points = nearer(points, eye, region.is_perspective)
             fill(points, colour, "NONE", 0.3)
             fill(points, colour, "LESS_EQUAL", 0.85)
-        if len(found["depths"]):
+        if len(depths):
             gpu.state.depth_test_set("NONE")
             gpu.state.line_width_set(3)
-            paint("LINES", found["depths"], (*DEPTH, 1.0))
+            paint("LINES", depths, (*DEPTH, 1.0))
             gpu.state.point_size_set(7)
-            paint("POINTS", found["depths"], (*DEPTH, 1.0))
+            paint("POINTS", depths, (*DEPTH, 1.0))
         gpu.state.depth_test_set("NONE")
         gpu.state.blend_set("NONE")
         gpu.state.line_width_set(1)

@@ -82,7 +82,8 @@ def contacts(path, first):
             continue
         frames[first + round(frame["clip_frame"])] = {
             "pairs": triangles,
-            "faults": [{"parts": fault["parts"], "depth_mm": fault["depth_mm"],
+            "faults": [{"parts": fault["parts"], "swallowed": fault["swallowed"],
+                        "triangles": [point["triangle"] for point in fault["deepest"]],
                         "points": [blender_axes(point["position"]) for point in fault["deepest"]]} for fault in faults],
         }
     return frames, {part["bone"]: part["name"] for part in played["parts"] if part["bone"]}
@@ -129,3 +130,44 @@ def outcomes(path):
         events = [event["outcome"] for clip in json.load(file)["clips"] for event in clip["events"]]
     counts = [f"{events.count(outcome)} {outcome.replace('_', ' ')}" for outcome in dict.fromkeys(events)]
     return ", ".join(counts) or "no fault"
+
+
+class Surface:
+    """Which triangles share an edge. `triangles` holds three corners a row; corners at one place have one number."""
+
+    def __init__(self, triangles):
+        self.triangles, self.sharing = triangles, {}
+        for at, corners in enumerate(triangles):
+            for edge in edges(corners):
+                self.sharing.setdefault(edge, []).append(at)
+
+    def flood(self, start, inside, most):
+        """Triangles that are joined with `start` over those that are `inside`; none if there are more than `most`."""
+        found, ahead = {start}, [start]
+        while ahead and len(found) <= most:
+            for edge in edges(self.triangles[ahead.pop()]):
+                for other in self.sharing[edge]:
+                    if other not in found and inside(other):
+                        found.add(other)
+                        ahead.append(other)
+        return found if len(found) <= most else set()
+
+
+def edges(corners):
+    a, b, c = corners
+    return [(min(a, b), max(a, b)), (min(b, c), max(b, c)), (min(c, a), max(c, a))]
+
+
+def swallowed_triangles(surface, part, found):
+    """The skin that is inside: from the deepest points of each fault to the triangles that touch. `part` is by triangle.
+
+    Where the line in which two parts cross does not close, the flood would run over the whole part, and is left out.
+    """
+    touching = {triangle for pair in found["pairs"] for triangle in pair}
+    skin = set()
+    for fault in found["faults"]:
+        for place, start in enumerate(fault["triangles"]):
+            own = sum(1 for name in part if name == part[start])
+            share = min(1.0, 2 * fault["swallowed"] + 0.05) if place == 0 else 0.25
+            skin |= surface.flood(start, lambda other: part[other] == part[start] and other not in touching, share * own)
+    return skin - touching
