@@ -48,11 +48,18 @@ def meshes_of(armature, layer):
     return found
 
 
-def frames_of(armature, scene):
+def actions_of(armature):
+    """Actions that move bones of this armature."""
+    bones = {f'pose.bones["{bpy.utils.escape_identifier(bone.name)}"]' for bone in armature.data.bones}
+    return [action for action in bpy.data.actions
+            if any(curve.data_path.rpartition(".")[0] in bones for curve in action.fcurves)]
+
+
+def frames_of(armature, scene, action):
     """First and last frame to look at: those of the action, or the scene's where tracks play without one."""
     data = armature.animation_data
-    if data and data.action:
-        first, last = data.action.frame_range
+    if action:
+        first, last = action.frame_range
         return math.floor(first + 1e-3), max(math.ceil(last - 1e-3), math.floor(first + 1e-3))
     if data and any(not track.mute and track.strips for track in data.nla_tracks):
         return scene.frame_start, scene.frame_end
@@ -75,7 +82,7 @@ class Character:
         self.name, self.scene_name = armature.name, context.scene.name
         self.fps = self.scene.render.fps / self.scene.render.fps_base
         self.scale = self.scene.unit_settings.scale_length
-        self.meshes = []
+        self.meshes, self.takes = [], []
         self.use_bones(meshes)
         self.read_meshes(meshes)
         if not self.meshes:
@@ -104,14 +111,12 @@ class Character:
         self.rest = np.array([bones[name].matrix_local for name in self.bones])
 
     def read_meshes(self, meshes):
-        with Stage(self.scene, []) as stage:
+        with Stage(self.scene) as stage:
             for item, bone in meshes:
-                copy = item.copy()  # an object that shares the mesh: modifiers are taken from the copy alone
-                stage.copies.append(copy)
+                copy = stage.copy(item)  # it shares the mesh; modifiers are taken from the copy alone
                 for modifier in list(copy.modifiers):
                     if modifier.type not in SHAPING or not modifier.show_viewport:
                         copy.modifiers.remove(modifier)
-                stage.scene.collection.objects.link(copy)
             layer = stage.scene.view_layers[0]
             layer.update()
             for (item, bone), copy in zip(meshes, stage.copies):
@@ -165,17 +170,20 @@ class Character:
                 joints[at, place], weights[at, place] = joint, weight
         return joints, weights / weights.sum(1, keepdims=True)
 
-    def sample(self, seconds=0.1):
-        """Plays the action. Yields after so many seconds, so that the window stays alive."""
-        first, last = frames_of(self.armature, self.scene)
+    def sample(self, other=None):
+        """Plays the action that is on, or another. Yields ten times a second, so that the window stays alive."""
+        data = self.armature.animation_data
+        action = other or (data.action if data else None)
+        first, last = frames_of(self.armature, self.scene, action)
         poses, moves, frame = [], [], first
         while frame <= last:
-            until = time.monotonic() + seconds
-            with Stage(self.scene, [self.armature]) as stage:
+            until = time.monotonic() + 0.1
+            with Stage(self.scene) as stage:
+                armature = stage.playing(self.armature, other)
                 layer = stage.scene.view_layers[0]
                 while frame <= last and time.monotonic() < until:
                     stage.scene.frame_set(frame)
-                    posed = self.armature.evaluated_get(layer.depsgraph)
+                    posed = armature.evaluated_get(layer.depsgraph)
                     bones = posed.pose.bones
                     poses.append([bones[name].matrix.copy() for name in self.bones])
                     moves.append(posed.matrix_world.copy())
@@ -183,46 +191,40 @@ class Character:
             yield f"reading frame {frame - 1} of {first}-{last}"
         self.first, self.last = first, last
         self.pose, self.move = np.array(poses), np.array(moves)
+        self.takes.append((action.name if action else "tracks", self.pose, self.move))
 
-    def clip_name(self):
-        data = self.armature.animation_data
-        return data.action.name if data.action else "tracks"
-
-    def local_pose(self):
-        """Each bone in its parent's space; the armature, in the file's, comes after the last bone."""
-        local = self.pose.copy()
+    def local_pose(self, pose=None):
+        """Each bone in its parent's space."""
+        pose = self.pose if pose is None else pose
+        local = pose.copy()
         for at, parent in enumerate(self.parents):
             if parent >= 0:
-                local[:, at] = np.linalg.inv(self.pose[:, parent]) @ self.pose[:, at]
-        return np.concatenate([local, self.to_file()[:, None]], 1)
+                local[:, at] = np.linalg.inv(pose[:, parent]) @ pose[:, at]
+        return local
 
-    def to_file(self):
-        """From the armature's space to the file's, in each frame."""
-        move = np.array(TO_GLTF) @ self.move
-        move[:, :3] *= self.scale
+    def to_file(self, move):
+        """From the armature's space to the file's."""
+        move = np.array(TO_GLTF) @ move
+        move[..., :3, :] *= self.scale
         return move
 
     def write(self, path):
-        """The character with its clip as a .glb."""
+        """The character with the actions that were played, as a .glb."""
         file = glb.Writer()
-        rest = self.rest.copy()
-        for at, parent in enumerate(self.parents):
-            if parent >= 0:
-                rest[at] = np.linalg.inv(self.rest[parent]) @ self.rest[at]
-        pose = self.local_pose()
-        keys = placed(np.concatenate([rest, pose[0, -1:]]))
-        nodes = [file.node(name=name, **key) for name, key in zip(self.bones + [self.armature.name], keys)]
+        bind = self.to_file(self.move[0])  # the skin is written as it stands in the scene: so the tool names places in the scene
+        rest = np.concatenate([self.local_pose(self.rest[None])[0], bind[None]])
+        nodes = [file.node(name=name, **keys) for name, keys in zip(self.bones + [self.armature.name], placed(rest))]
         children = {}
         for at, parent in enumerate(self.parents):
             children.setdefault(parent if parent >= 0 else len(self.bones), []).append(at)
         for parent, below in children.items():
             file.gltf["nodes"][parent]["children"] = below
-        bind = self.to_file()[0]  # the skin is written as it stands in the scene: so the tool names places in the scene
         inverse = np.linalg.inv(np.concatenate([bind @ self.rest, bind[None]]))
         file.gltf["skins"] = [{"joints": nodes, "inverseBindMatrices": file.accessor(inverse.transpose(0, 2, 1), 5126, "MAT4")}]
         meshes = [file.mesh(mesh["object"], 0, self.primitives(mesh, bind)) for mesh in self.meshes]
         file.gltf["scenes"] = [{"nodes": [nodes[-1]] + meshes}]
-        file.clip(self.clip_name(), nodes, pose, self.fps)
+        for name, pose, move in self.takes:
+            file.clip(name, nodes, np.concatenate([self.local_pose(pose), self.to_file(move)[:, None]], 1), self.fps)
         file.save(path)
 
     def primitives(self, mesh, bind):
@@ -263,17 +265,35 @@ def placed(matrices):
 class Stage:
     """A scene of its own for some objects, as long as a `with` lasts. Nothing of it is left in the file."""
 
-    def __init__(self, scene, objects):
-        self.like, self.objects, self.copies = scene, objects, []
+    def __init__(self, like):
+        self.frame, self.copies = like.frame_current, []
 
     def __enter__(self):
         self.scene = bpy.data.scenes.new("spherechain")
-        self.scene.frame_current = self.like.frame_current
-        for item in self.objects:
-            self.scene.collection.objects.link(item)
+        self.scene.frame_current = self.frame
         return self
 
     def __exit__(self, *_):
         bpy.data.scenes.remove(self.scene)
         for copy in self.copies:
             bpy.data.objects.remove(copy)
+
+    def copy(self, item):
+        self.copies.append(item.copy())
+        self.scene.collection.objects.link(self.copies[-1])
+        return self.copies[-1]
+
+    def playing(self, armature, other):
+        """The armature itself; or, for an action that is not on, a copy that plays it and follows its own bones."""
+        if other is None:
+            self.scene.collection.objects.link(armature)
+            return armature
+        double = self.copy(armature)
+        double.animation_data_create().action = other
+        for track in double.animation_data.nla_tracks:
+            track.mute = True
+        for bone in double.pose.bones:
+            for constraint in bone.constraints:
+                if getattr(constraint, "target", None) == armature:
+                    constraint.target = double
+        return double

@@ -69,7 +69,9 @@ def kill_group(process):
     try:
         os.killpg(process.pid, signal.SIGTERM)
         process.wait(2)
-    except subprocess.TimeoutExpired:
-        os.killpg(process.pid, signal.SIGKILL)
+    except (ProcessLookupError, subprocess.TimeoutExpired):
+        pass
+    try:
+        os.killpg(process.pid, signal.SIGKILL)  # what the tool left
     except ProcessLookupError:
         pass

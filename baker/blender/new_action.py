@@ -22,7 +22,7 @@ def from_mended(character, path):
     """Yields progress; a sentence at the end. The new action is a copy of the old one with other keys for what turned."""
     armature = character.armature
     wanted = glb.rotations(path, character.bones, len(character.pose), character.fps)
-    translations, rotations, scales = glb.split(character.local_pose()[:, :-1])
+    translations, rotations, scales = glb.split(character.local_pose())
     turned = glb.angles(wanted, rotations) > TURNED
     if not turned.any():
         return "No joint had to turn: no new action"
@@ -138,13 +138,7 @@ def in_mode(mode, turn, near):
 
 def off(character, pose):
     """Plays the new action; names of bones that do not turn as the tool's file says."""
-    kept = character.pose
     yield from character.sample()
-    local = character.local_pose()[:, :-1]
-    character.pose, played = kept, local
-    wanted = pose.copy()
-    for at, parent in enumerate(character.parents):
-        if parent >= 0:
-            wanted[:, at] = np.linalg.inv(pose[:, parent]) @ pose[:, at]
-    wrong = glb.angles(glb.split(played)[1], glb.split(wanted)[1]).max(0) > SAME
+    played, wanted = glb.split(character.local_pose())[1], glb.split(character.local_pose(pose))[1]
+    wrong = glb.angles(played, wanted).max(0) > SAME
     return [name for name, is_wrong in zip(character.bones, wrong) if is_wrong]

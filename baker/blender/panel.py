@@ -23,7 +23,7 @@ class Preferences(bpy.types.AddonPreferences):
     def draw(self, _context):
         self.layout.prop(self, "tool")
         found = results.find_tool(self.tool)
-        self.layout.label(text=found or results.INSTALL, icon="CHECKMARK" if found else "ERROR")
+        self.layout.label(text=found or results.missing(self.tool), icon="CHECKMARK" if found else "ERROR")
 
 
 def jump(shown, context):
@@ -72,12 +72,13 @@ class Start:
         return runner.task is None and context.object is not None
 
     def execute(self, context):
-        tool = results.find_tool(context.preferences.addons[__package__].preferences.tool)
+        path = context.preferences.addons[__package__].preferences.tool
+        tool = results.find_tool(path)
         if tool is None:
-            runner.error = results.INSTALL
-            self.report({"ERROR"}, results.INSTALL)
+            runner.error = results.missing(path)
+            self.report({"ERROR"}, runner.error)
             return {"CANCELLED"}
-        runner.start(self.kind, context, tool)
+        runner.start(self.kind, context, tool)  # reads nothing yet: the first step does
         if not bpy.app.background:
             bpy.app.timers.register(tick)
             return {"FINISHED"}

@@ -7,7 +7,6 @@ import shutil
 
 PREFIX = "sc: "  # timeline markers that begin so are ours
 FAULTS = ("inside", "penetration", "deep_fold")
-INSTALL = "spherechain is not on PATH: install the tool's package, or set its path in the add-on's preferences"
 
 
 def find_tool(path):
@@ -16,6 +15,13 @@ def find_tool(path):
         return shutil.which("spherechain")
     path = os.path.expanduser(path)
     return path if os.path.isfile(path) and os.access(path, os.X_OK) else None
+
+
+def missing(path):
+    """What to do where `find_tool` finds nothing."""
+    if path:
+        return f"{path} is no program: correct the path in the add-on's preferences"
+    return "spherechain is not on PATH: install its package, or set its path in the add-on's preferences"
 
 
 def error_line(text, names):

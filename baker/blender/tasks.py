@@ -8,7 +8,7 @@ import tempfile
 import bpy
 
 from . import drawing, new_action, results
-from .character import Character, Refused
+from .character import Character, Refused, actions_of
 from .job import Failed, Job
 
 numbers = itertools.count()
@@ -33,9 +33,10 @@ def follow(job):
     return job.result
 
 
-def exported(character):
-    """Plays the action and writes the character; the file's path."""
-    yield from character.sample()
+def exported(character, actions=(None,)):
+    """Plays the action that is on, or others, and writes the character; the file's path."""
+    for action in actions:
+        yield from character.sample(action)
     path = os.path.join(work_folder(), "character.glb")
     character.write(path)
     return path
@@ -71,7 +72,7 @@ def show_events(character, events, others, notes):
         row = shown.events.add()
         row.name, row.size, row.kind = event["text"], event["size"], event["class"]
         row.first, row.last, row.worst = event["from"], event["to"], event["worst"]
-    shown.checked = (f"{character.clip_name()}, frames {character.first}-{character.last}: {len(events)} faults, "
+    shown.checked = (f"{character.takes[0][0]}, frames {character.first}-{character.last}: {len(events)} faults, "
                      f"{others} touches")
     shown.note = " ".join(notes)
     markers = character.scene.timeline_markers
@@ -98,7 +99,8 @@ def fix(context, tool):
 
 def mask(context, tool):
     character = Character(context)
-    source = yield from exported(character)
+    actions = actions_of(character.armature)
+    source = yield from exported(character, actions or (None,))
     hidden = os.path.join(os.path.dirname(source), "mask.json")
     job = Job(lambda job: job.tool([tool, "mask", source, "--as", "json", "-o", hidden]), {source: character.name})
     yield from follow(job)
@@ -116,7 +118,7 @@ def mask(context, tool):
             item.vertex_groups.remove(old)
         item.vertex_groups.new(name=GROUP).add(vertices, 1.0, "REPLACE")
         total += len(vertices)
-    character.armature.spherechain.checked = f"Vertex group '{GROUP}': {total} vertices"
+    character.armature.spherechain.checked = f"Vertex group '{GROUP}': {total} vertices, by {len(character.takes)} actions"
 
 
 GROUP = "spherechain hidden"
