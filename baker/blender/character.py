@@ -177,17 +177,19 @@ class Character:
         first, last = frames_of(self.armature, self.scene, action)
         poses, moves, frame = [], [], first
         while frame <= last:
-            until = time.monotonic() + 0.1
             with Stage(self.scene) as stage:
                 armature = stage.playing(self.armature, other)
                 layer = stage.scene.view_layers[0]
-                while frame <= last and time.monotonic() < until:
+                until = time.monotonic() + 0.1
+                while True:
                     stage.scene.frame_set(frame)
                     posed = armature.evaluated_get(layer.depsgraph)
                     bones = posed.pose.bones
                     poses.append([bones[name].matrix.copy() for name in self.bones])
                     moves.append(posed.matrix_world.copy())
                     frame += 1
+                    if frame > last or time.monotonic() > until:
+                        break
             yield f"reading frame {frame - 1} of {first}-{last}"
         self.first, self.last = first, last
         self.pose, self.move = np.array(poses), np.array(moves)

@@ -10,6 +10,7 @@ import sys
 import time
 import traceback
 
+import bmesh
 import bpy
 import numpy
 
@@ -251,7 +252,7 @@ def mends_into_a_new_action():
 
     armature.animation_data.action = old
     arm = armature.pose.bones["left_shoulder"].constraints.new("COPY_ROTATION")
-    arm.target, arm.subtarget, arm.owner_space, arm.target_space = armature, "left_hip", "LOCAL", "LOCAL"
+    arm.influence, arm.target, arm.subtarget, arm.owner_space, arm.target_space = 0.05, armature, "left_hip", "LOCAL", "LOCAL"
     refused(bpy.ops.spherechain.fix, "Constraints or drivers turn left_shoulder")
     assert armature.animation_data.action == old and len(bpy.data.actions) == 2
 
@@ -288,16 +289,15 @@ def masks_the_skin_below_a_shirt():
     shirt.data = body.data.copy()
     shirt.name = "Hemd"
     bpy.context.scene.collection.objects.link(shirt)
-    for vertex in shirt.data.vertices:
-        vertex.co += 0.01 * vertex.normal
-    bpy.ops.object.select_all(action="DESELECT")
-    for face in shirt.data.polygons:
-        face.select = not all(vertex in worn for vertex in face.vertices)
-    bpy.context.view_layer.objects.active = shirt
-    bpy.ops.object.mode_set(mode="EDIT")
-    bpy.ops.mesh.select_mode(type="FACE")
-    bpy.ops.mesh.delete(type="FACE")
-    bpy.ops.object.mode_set(mode="OBJECT")
+    cut = bmesh.new()
+    cut.from_mesh(shirt.data)
+    bmesh.ops.delete(cut, geom=[vertex for vertex in cut.verts if vertex.index not in worn], context="VERTS")
+    bmesh.ops.remove_doubles(cut, verts=cut.verts, dist=1e-5)  # the file has four vertices for each face
+    cut.normal_update()
+    for vertex, normal in [(vertex, vertex.normal.copy()) for vertex in cut.verts]:
+        vertex.co += 0.01 * normal
+    cut.to_mesh(shirt.data)
+    cut.free()
     bpy.ops.spherechain.mask()
     group = body.vertex_groups["spherechain hidden"].index
     hidden = {vertex.index for vertex in body.data.vertices if any(entry.group == group for entry in vertex.groups)}
