@@ -32,6 +32,6 @@ spherechain fix $models/Collada/human.zae --motion "$try/walk.bvh" --parts "left
 spherechain check "$try/walk.glb" -o "$try/report" --fps 30 --json "$try/walk.json" >/dev/null 2>&1 || [[ $? -eq 6 ]]
 
 blender_python tests/blender/install.py -- "$zip"
-blender_python tests/blender/plain.py
+python3 tests/blender/plain.py 2>&1 | tail -1
 blender_python tests/blender/character.py -- "$try/walk.glb" "$try/walk.json"
 echo "$(basename "$zip"): installed, checked, mended and masked"
