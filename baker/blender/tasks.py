@@ -80,6 +80,9 @@ def show_events(character, events, others, notes):
         markers.remove(marker)
     for event in events:
         markers.new(results.marker_name(event), frame=event["worst"])
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            area.tag_redraw()
 
 
 def fix(context, tool):
