@@ -180,7 +180,7 @@ class Character:
             with Stage(self.scene) as stage:
                 armature = stage.playing(self.armature, other)
                 layer = stage.scene.view_layers[0]
-                until = time.monotonic() + 0.1
+                until = time.monotonic() + (math.inf if bpy.app.background else 0.1)
                 while True:
                     stage.scene.frame_set(frame)
                     posed = armature.evaluated_get(layer.depsgraph)
