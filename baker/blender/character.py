@@ -67,7 +67,7 @@ def frames_of(armature, scene, action):
 
 
 class Character:
-    """What is exported: bones, meshes and where they came from."""
+    """The bones and meshes that are exported, and the poses that were sampled."""
 
     def __init__(self, context, armature=None):
         layer = context.view_layer

@@ -35,7 +35,7 @@ class Contacts:
         self.found, self.sorted = frames, {}
 
     def at(self, frame):
-        """Of a frame with contacts: triangles that are inside, of faults, and of touches and folds; the faults' depths."""
+        """A frame with contacts: triangles that are inside, of faults, and of touches and folds; the faults' deepest points."""
         if frame not in self.sorted:
             found = self.found[frame]
             faults = {frozenset(fault["parts"]) for fault in found["faults"]}
@@ -77,7 +77,7 @@ def forget():
 
 
 def state(armature, frame):
-    """What the panel says below the list."""
+    """The line that the panel shows below the list."""
     contacts = shown.get(armature.name)
     if contacts is None:
         return ""

@@ -72,6 +72,6 @@ def kill_group(process):
     except (ProcessLookupError, subprocess.TimeoutExpired):
         pass
     try:
-        os.killpg(process.pid, signal.SIGKILL)  # what the tool left
+        os.killpg(process.pid, signal.SIGKILL)  # processes that the tool started and did not end
     except ProcessLookupError:
         pass

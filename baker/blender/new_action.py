@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes a new action of what `fix` turned. The old one stays as it is."""
+"""Makes a new action from the joints that `fix` turned. The old action stays as it is."""
 
 import bpy
 import numpy as np

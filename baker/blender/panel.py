@@ -40,7 +40,7 @@ class Event(bpy.types.PropertyGroup):
 
 
 class Shown(bpy.types.PropertyGroup):
-    """Of an armature: its events."""
+    """The events of an armature, and how they are shown."""
 
     events: bpy.props.CollectionProperty(type=Event)
     active: bpy.props.IntProperty(update=jump, description="Go to the worst frame of this event")

@@ -18,7 +18,7 @@ def find_tool(path):
 
 
 def missing(path):
-    """What to do where `find_tool` finds nothing."""
+    """Says what to do where `find_tool` finds nothing."""
     if path:
         return f"{path} is no program: correct the path in the add-on's preferences"
     return "spherechain is not on PATH: install its package, or set its path in the add-on's preferences"
@@ -43,7 +43,7 @@ def progress_line(line, names):
 
 
 def events(path, first):
-    """Faults and poke-through of `check --json`, and what else was found, in words. The clip begins at the frame `first`."""
+    """Reads `check --json`: faults and poke-through, the number of other events, notes. The clip begins at the frame `first`."""
     with open(path, encoding="utf-8") as file:
         checked = json.load(file)
     clip = checked["clips"][0]
@@ -77,7 +77,7 @@ def marker_name(event):
 
 
 def contacts(path, first):
-    """Of `play --contacts --json`: for each frame of the scene the triangles that touch and the faults' deepest points."""
+    """Reads `play --contacts --json`: for each frame of the scene the triangles that touch and the faults' deepest points."""
     with open(path, encoding="utf-8") as file:
         played = json.load(file)
     frames = {}
@@ -101,7 +101,7 @@ def blender_axes(point):
 
 
 def hidden_triangles(path):
-    """Of `mask --as json`: numbers of the hidden triangles by mesh name."""
+    """Reads `mask --as json`: numbers of the hidden triangles by mesh name."""
     with open(path, encoding="utf-8") as file:
         return {mesh["mesh"]: mesh["hidden"] for mesh in json.load(file)["meshes"]}
 
@@ -131,7 +131,7 @@ def parts_of_bones(bones, parents, parts):
 
 
 def outcomes(path):
-    """Of `fix.json`: how many events came to which outcome, in words."""
+    """Reads `fix.json`: how many events came to which outcome, in words."""
     with open(path, encoding="utf-8") as file:
         events = [event["outcome"] for clip in json.load(file)["clips"] for event in clip["events"]]
     counts = [f"{events.count(outcome)} {outcome.replace('_', ' ')}" for outcome in dict.fromkeys(events)]
