@@ -91,7 +91,7 @@ function readPage(file) {
 function readSource(file) {
   const text = readFileSync(join(root, file), 'utf8');
   const language = { h: 'cpp', hpp: 'cpp', mjs: 'js', cjs: 'js', fbs: 'protobuf' }[extname(file).slice(1)] ?? extname(file).slice(1);
-  return { file, place: placeOf(file), title: file, headings: [], sections: [], html: `<h1>${escape(file)}</h1><pre><code>${highlight(text, language)}</code></pre>` };
+  return { file, place: placeOf(file), title: file, headings: [], sections: [], kind: 'broad', html: `<h1>${escape(file)}</h1><pre><code>${highlight(text, language)}</code></pre>` };
 }
 
 while (queue.length > 0) {
@@ -144,7 +144,7 @@ function write(page) {
   writeFileSync(join(out, page.place), template.replace(/\{\{(\w+)\}\}/g, (_, name) => values[name]));
 }
 for (const page of found.values()) if (page) write(page);
-write({ file: 'scripts/site/demo.html', place: DEMO, title: 'Live demo', headings: [], kind: 'demo', html: readFileSync(join(here, 'demo.html'), 'utf8') });
+write({ file: 'scripts/site/demo.html', place: DEMO, title: 'Live demo', headings: [], kind: 'broad', html: readFileSync(join(here, 'demo.html'), 'utf8') });
 copyFileSync(demo, join(out, 'demo/human.html'));
 
 // A page from disk may not fetch an index, so that the index is a script.
