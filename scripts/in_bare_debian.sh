@@ -1,23 +1,28 @@
 #!/usr/bin/env bash
-# Runs a command in a bare Debian 12, as root: `scripts/in_bare_debian.sh FOLDER COMMAND...`. The command starts in /try, a copy
-# of FOLDER, and finds nothing but what debootstrap installs. It gets this machine's Debian mirror, proxy and certificates. The
-# bare Debian is made once, in build/bare-debian; each run gets a copy, build/bare-debian-run, which stays until the next run.
+# Runs a command in a bare Debian, as root: `scripts/in_bare_debian.sh [--suite trixie] FOLDER COMMAND...`, by default in Debian
+# 12 (bookworm). The command starts in /try, a copy of FOLDER, and finds nothing but what debootstrap installs. It gets this
+# machine's Debian mirror, proxy and certificates. The bare Debian is made once, in build/bare-debian-SUITE; each run gets a copy,
+# build/bare-debian-SUITE-run, which stays until the next run.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+suite=bookworm
+if [[ $1 == --suite ]]; then suite=$2; shift 2; fi
 [[ $(id -u) -eq 0 ]] || { echo "in_bare_debian: needs root, for chroot" >&2; exit 1; }
 if ! command -v debootstrap >/dev/null; then
   apt-get update -qq
   DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends debootstrap >/dev/null
 fi
-sources() { apt-get indextargets --format "$1" 'Origin: Debian' "Codename: $2" 'Created-By: Packages' 2>/dev/null | sort -u; }
-bare=$PWD/build/bare-debian root=$PWD/build/bare-debian-run
+# The mirrors of this machine, which may run another Debian, hold every suite.
+own=$(. /etc/os-release && echo "$VERSION_CODENAME")
+mirrors() { apt-get indextargets --format '$(REPO_URI)' 'Origin: Debian' "Codename: $own$1" 'Created-By: Packages' 2>/dev/null | sort -u; }
+bare=$PWD/build/bare-debian-$suite root=$PWD/build/bare-debian-$suite-run
 if [[ ! -e $bare/complete ]]; then
   rm -rf "$bare"
-  mirror=$(sources '$(REPO_URI)' bookworm | head -1)
-  debootstrap --variant=minbase bookworm "$bare" ${mirror:+"$mirror"} >/dev/null
-  for codename in bookworm-updates bookworm-security; do
-    sources 'deb $(REPO_URI) $(CODENAME) $(COMPONENT)' "$codename" >>"$bare/etc/apt/sources.list"
+  mirror=$(mirrors '' | head -1)
+  debootstrap --variant=minbase "$suite" "$bare" ${mirror:+"$mirror"} >/dev/null
+  for part in -updates -security; do
+    for mirror in $(mirrors $part); do echo "deb $mirror $suite$part main" >>"$bare/etc/apt/sources.list"; done
   done
   touch "$bare/complete"
 fi

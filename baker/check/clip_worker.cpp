@@ -43,6 +43,7 @@ class ClipWorker {
           do_unchanged(character.of->file, character.hash, [&] {
             animated.emplace(OpenAsset(asset, character.of->name), character.of->name, character.of->file.string(),
                              MotionChoice{}, frames);
+            animated->take_joints();  // the page blends the skin by their weights, whatever a recording plays later
             if (!has_page) page = character_page(*animated);
           });
           do_unchanged(character.of->file, character.hash,

@@ -135,9 +135,10 @@ std::string GlbFile::bytes() const {
   return out + data;
 }
 
-const ordered_json& entry_of(const ordered_json& object, const std::string& name) {
+const ordered_json& entry_of(const ordered_json& object, std::string_view name) {
   static const ordered_json kNull;
-  return object.is_object() && object.contains(name) ? object[name] : kNull;
+  const auto found = object.find(std::string(name));  // the end of what is no object
+  return found == object.end() ? kNull : *found;
 }
 
 GlbFile glb_of_bytes(const std::string& bytes, const std::string& file) {

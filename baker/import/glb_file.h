@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace spherechain::baker {
@@ -25,7 +26,7 @@ struct GlbFile {
 };
 
 // The entry of an object, or null.
-const nlohmann::ordered_json& entry_of(const nlohmann::ordered_json& object, const std::string& name);
+const nlohmann::ordered_json& entry_of(const nlohmann::ordered_json& object, std::string_view name);
 
 // A binary glTF apart; read_as_glb() makes such bytes. Throws Error(kFile) that names `file` where it is none.
 GlbFile glb_of_bytes(const std::string& bytes, const std::string& file);

@@ -1,29 +1,44 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "baker/mesh/surface_query.h"
 
-#include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
-#include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Simple_cartesian.h>
+#include <CGAL/version.h>
+#if CGAL_VERSION_MAJOR >= 6
+#include <CGAL/AABB_traits_3.h>
+#include <CGAL/AABB_triangle_primitive_3.h>
+#else
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_triangle_primitive.h>
+#endif
 
 #include <numeric>
+#include <type_traits>
 
 namespace spherechain::baker {
 namespace {
 
 using Kernel = CGAL::Simple_cartesian<double>;
 using Triangles = std::vector<Kernel::Triangle_3>;
+#if CGAL_VERSION_MAJOR >= 6
+using Primitive = CGAL::AABB_triangle_primitive_3<Kernel, Triangles::const_iterator>;
+using TraitsOfCgal = CGAL::AABB_traits_3<Kernel, Primitive>;
+#else
 using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
+using TraitsOfCgal = CGAL::AABB_traits<Kernel, Primitive>;
+#endif
 
 Kernel::Point_3 to_cgal(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 Vec3 from_cgal(const Kernel::Point_3& p) { return {p.x(), p.y(), p.z()}; }
 
 // CGAL's ray against a triangle ends the program where rounding makes a flat triangle contradict itself. This one has
 // no such case: a triangle that the ray lies in, or that has no area, is not hit.
-struct Traits : CGAL::AABB_traits<Kernel, Primitive> {
+struct Traits : TraitsOfCgal {
   struct Intersection {
     using Hit = Intersection_and_primitive_id<Kernel::Ray_3>::Type;
-    boost::optional<Hit> operator()(const Kernel::Ray_3& ray, const Primitive& primitive) const {
+    // An optional of Boost before CGAL 6, of the standard library since.
+    using Result = std::invoke_result_t<TraitsOfCgal::Intersection, const Kernel::Ray_3&, const Primitive&>;
+    Result operator()(const Kernel::Ray_3& ray, const Primitive& primitive) const {
       const Kernel::Triangle_3& triangle = *primitive.id();
       const Kernel::Vector_3 direction = ray.to_vector();
       const Kernel::Vector_3 a = triangle[0] - ray.source(), b = triangle[1] - ray.source(),
@@ -33,9 +48,9 @@ struct Traits : CGAL::AABB_traits<Kernel, Primitive> {
       };
       const double u = side(b, c), v = side(c, a), w = side(a, b), sum = u + v + w;
       const bool is_inside = (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
-      if (!is_inside || sum == 0) return boost::none;
+      if (!is_inside || sum == 0) return {};
       const Kernel::Vector_3 offset = (u * a + v * b + w * c) / sum;
-      if (CGAL::scalar_product(offset, direction) < 0) return boost::none;
+      if (CGAL::scalar_product(offset, direction) < 0) return {};
       return Hit(ray.source() + offset, primitive.id());
     }
   };
@@ -80,7 +95,7 @@ std::optional<SurfaceHit> SurfaceQuery::first_hit(const Vec3& origin, const Vec3
   const Kernel::Ray_3 ray(to_cgal(origin), Kernel::Vector_3(direction.x(), direction.y(), direction.z()));
   const auto hit = tree_->aabb.first_intersection(ray);
   if (!hit) return std::nullopt;
-  const Vec3 p = from_cgal(boost::get<Kernel::Point_3>(hit->first));
+  const Vec3 p = from_cgal(get<Kernel::Point_3>(hit->first));
   return SurfaceHit{p, (p - origin).norm(), tree_->id(hit->second)};
 }
 

@@ -116,6 +116,14 @@ test('an event in 3D has the base colours of the file, and the spheres with thei
   assert.match(await page.locator('#spheres-button').innerText(), /Hide/);
 });
 
+test('the skin moves with the recording', async () => {
+  await page.keyboard.press('r'); // without paint on contacts
+  await page.getByLabel('Hold the character in place').uncheck(); // else the camera goes with it
+  const atEvent = await picture(page);
+  await page.evaluate(() => spherechainViewer.setFrame(0));
+  assert.ok(compare(atEvent, await picture(page)) > 0.02);
+});
+
 test('N and P go through the events, over clips, and the address is a link', async () => {
   const events = json.clips.flatMap((clip) => faults(clip).map((event, i) => ({ clip: clip.clip, event, i })));
   await page.goto('about:blank');

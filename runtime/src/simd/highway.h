@@ -38,6 +38,20 @@
 
 #include "runtime/src/simd/fused.h"
 
+// For SPHERECHAIN_KERNELS (simd.h). Highway 1.0.3 has no SSE2.
+#if defined(HWY_CHOOSE_SSE2)
+#define SPHERECHAIN_CHOOSE_SSE2(kernel) HWY_CHOOSE_SSE2(kernel)
+#else
+#define SPHERECHAIN_CHOOSE_SSE2(kernel) nullptr
+#endif
+
+// Newer Highways have a second NEON target, for cores without AES: we need none of it.
+#if defined(HWY_NEON_WITHOUT_AES) && (HWY_TARGETS & HWY_NEON_WITHOUT_AES)
+#define SPHERECHAIN_CHOOSE_NEON(kernel) HWY_CHOOSE_NEON_WITHOUT_AES(kernel)
+#else
+#define SPHERECHAIN_CHOOSE_NEON(kernel) HWY_CHOOSE_NEON(kernel)
+#endif
+
 #if defined(HWY_DISABLE_BMI2_FMA)
 #error "spherechain's AVX2 target fuses multiply-adds: HWY_DISABLE_BMI2_FMA would change its results"
 #endif

@@ -36,19 +36,6 @@ bool resolve_target(Target wanted, Target& resolved) noexcept;
                                                                                      SPHERECHAIN_CHOOSE_NEON(kernel), \
                                                                                      HWY_CHOOSE_WASM(kernel)}
 
-#if defined(HWY_CHOOSE_SSE2)
-#define SPHERECHAIN_CHOOSE_SSE2(kernel) HWY_CHOOSE_SSE2(kernel)
-#else
-#define SPHERECHAIN_CHOOSE_SSE2(kernel) nullptr
-#endif
-
-// Newer Highways have a second NEON target, for cores without AES: we need none of it.
-#if defined(HWY_NEON_WITHOUT_AES) && (HWY_TARGETS & HWY_NEON_WITHOUT_AES)
-#define SPHERECHAIN_CHOOSE_NEON(kernel) HWY_CHOOSE_NEON_WITHOUT_AES(kernel)
-#else
-#define SPHERECHAIN_CHOOSE_NEON(kernel) HWY_CHOOSE_NEON(kernel)
-#endif
-
 constexpr std::size_t index_of(Target resolved) { return static_cast<std::size_t>(resolved); }
 
 }  // namespace spherechain
