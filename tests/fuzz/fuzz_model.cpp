@@ -197,7 +197,7 @@ class Asking {
         }
         return;
       case Question::kGround: {
-        Ground ground{{0, 1, 0}, 0, nullptr, nullptr};
+        Ground ground{.up = {0, 1, 0}};
         fill_figures(c_, &ground.height, 1);
         if (!(ground.height > -1e9F && ground.height < 1e9F)) ground.height = 0;
         return check(body.below(ground, query), query, body);
