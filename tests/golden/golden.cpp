@@ -289,8 +289,8 @@ void check_versions(HashTable& table) {
     const Status status = sc_asset_open(&asset, SC_ABI_VERSION, old.data(), 4 * old.size(), message, sizeof message);
     table.expect(status == SC_OTHER_VERSION && sc_part_words(&asset) == 0, "not refused as another version", how);
     table.expect(std::strstr(message, (std::to_string(version) + ", but this runtime reads").c_str()) != nullptr &&
-                     std::strstr(message, "bake it again") != nullptr,
-                 "the message does not say to bake it again", how);
+                     std::strstr(message, version < kFormatVersion ? "bake it again" : "update spherechain") != nullptr,
+                 "the message does not say what to do", how);
   }
 }
 

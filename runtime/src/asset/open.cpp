@@ -52,8 +52,8 @@ sc_code verify(const void* data, std::size_t size, Message& message) {
   const auto* const bytes = static_cast<const std::uint8_t*>(data);
   std::uint32_t version = 0;
   if (read_version(bytes, size, version) && version != kFormatVersion) {
-    message.wrong("format_version: %" PRIu32 ", but this runtime reads %" PRIu32 " only: bake it again", version,
-                  kFormatVersion);
+    message.wrong("format_version: %" PRIu32 ", but this runtime reads %" PRIu32 " only: %s", version, kFormatVersion,
+                  version < kFormatVersion ? "bake it again" : "update spherechain, or bake it with this version");
     return SC_OTHER_VERSION;
   }
   flatbuffers::Verifier verifier(bytes, size, kMaxDepth, kMaxTables);
