@@ -428,7 +428,7 @@ namespace Spherechain
 
         public unsafe struct Asset  // sc_asset
         {
-            public fixed ulong Opaque[128];
+            public fixed ulong Opaque[256];
         }
 
         public unsafe struct Bone  // sc_bone

@@ -25,7 +25,7 @@ namespace {
 
 constexpr sc_status kRefused{SC_BAD_VALUE, SC_FIELD_STRUCT_SIZE};
 
-// What a later library's headers make of a struct.
+// A struct as a later version has it.
 template <typename T>
 struct Later {
   T known;
