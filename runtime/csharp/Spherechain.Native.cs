@@ -56,7 +56,7 @@ namespace Spherechain
         UnsupportedTarget = 10,
         /// <summary>the bytes are no .sphc file</summary>
         NotAnAsset = 11,
-        /// <summary>the asset is of another format version: bake it again</summary>
+        /// <summary>the asset needs a later library, or is older than release 0.1.0</summary>
         OtherVersion = 12,
         /// <summary>the asset is cut short or damaged</summary>
         Corrupt = 13,
@@ -129,6 +129,7 @@ namespace Spherechain
         Allocator = 46,
         Query = 47,
         PartPairs = 48,
+        StructSize = 49,
     }
 
     public enum PenetrationClass : int  // sc_penetration_class
@@ -263,6 +264,8 @@ namespace Spherechain
         public float Swallowed;
         /// <summary>1: a sphere's centre is inside, and its limb comes out again on the other side</summary>
         public int Through;
+        /// <summary>0</summary>
+        public uint Reserved0, Reserved1, Reserved2, Reserved3;
     }
 
     public struct Rule  // sc_rule
@@ -293,6 +296,8 @@ namespace Spherechain
         public float LooseDepth;
         /// <summary>inside: at least this share of the part is swallowed; or it comes out again. From three quarters of it on the allowed depths shrink to 0</summary>
         public float Inside;
+        /// <summary>0; others are refused</summary>
+        public float Reserved0, Reserved1, Reserved2, Reserved3;
     }
 
     public struct PartContact  // sc_part_contact
@@ -343,6 +348,8 @@ namespace Spherechain
         /// <summary>the points that part last; deepest_other - deepest = distance * direction</summary>
         public SkinPoint Deepest, DeepestOther;
         public Measures Measures;
+        /// <summary>0</summary>
+        public uint Reserved0, Reserved1, Reserved2, Reserved3;
     }
 
     public struct StepContact  // sc_step_contact
@@ -407,7 +414,7 @@ namespace Spherechain
 #endif
         const CallingConvention Cdecl = CallingConvention.Cdecl;
 
-        public const uint AbiVersion = 17;
+        public const uint AbiVersion = 18;
         public const uint AssetAlignment = 8;
         public const uint Floor = 0xFFFFFFFFu;
         public const uint NoJoint = 0xFFFFFFFFu;
@@ -421,7 +428,7 @@ namespace Spherechain
 
         public unsafe struct Asset  // sc_asset
         {
-            public fixed ulong Opaque[128];
+            public fixed ulong Opaque[256];
         }
 
         public unsafe struct Bone  // sc_bone
@@ -500,34 +507,39 @@ namespace Spherechain
 
         public unsafe struct ModelDef  // sc_model_def
         {
+            public uint StructSize;
+            /// <summary>of the joints that have an inverse bind matrix</summary>
+            public MatrixLayout InverseBindLayout;
             /// <summary>the bytes of a .sphc file, copied</summary>
             public void* Data;
             public UIntPtr Size;
             public Bone* Joints;
             public UIntPtr JointCount;
-            /// <summary>of the joints that have an inverse bind matrix</summary>
-            public MatrixLayout InverseBindLayout;
             /// <summary>copied; null: malloc</summary>
             public Allocator* Allocator;
         }
 
         public unsafe struct BodyDef  // sc_body_def
         {
+            public uint StructSize;
+            /// <summary>1: sc_find_steps() works; it needs much memory</summary>
+            public int FindsSteps;
             public UIntPtr MaxTriangles;
             /// <summary>0: 128; the worst are kept</summary>
             public UIntPtr MaxPenetrations;
             /// <summary>of all that it will meet; null: none is larger than its own model</summary>
             public IntPtr LargestOther;
-            /// <summary>1: sc_find_steps() works; it needs much memory</summary>
-            public int FindsSteps;
             /// <summary>copied; null: the model's</summary>
             public Allocator* Allocator;
         }
 
         public unsafe struct Query  // sc_query
         {
+            public uint StructSize;
             public Scope Scope;
             public int Full;
+            /// <summary>of spheres and their pairs</summary>
+            public Radius Radius;
             public ulong* IgnoredPairs;
             public ulong* IgnoredParts;
             public ulong* IgnoredPartsOfOther;
@@ -542,8 +554,6 @@ namespace Spherechain
             public UIntPtr PreviousCount;
             /// <summary>of steps, a share of the height; 0: 0.0001</summary>
             public float Tolerance;
-            /// <summary>of spheres and their pairs</summary>
-            public Radius Radius;
             /// <summary>the same answers on every one</summary>
             public Target Target;
         }
@@ -575,6 +585,7 @@ namespace Spherechain
 
         public unsafe struct Ground  // sc_ground
         {
+            public uint StructSize;
             public Vec3 Up;
             /// <summary>up . p = height on the plane</summary>
             public float Height;
@@ -584,6 +595,7 @@ namespace Spherechain
 
         public unsafe struct CrowdJob  // sc_crowd_job
         {
+            public uint StructSize;
             public Asset* Asset;
             /// <summary>below 2^32</summary>
             public UIntPtr InstanceCount;
@@ -631,6 +643,7 @@ namespace Spherechain
 
         public unsafe struct SceneJob  // sc_scene_job
         {
+            public uint StructSize;
             public SceneBody* Bodies;
             /// <summary>at most 2^24</summary>
             public UIntPtr BodyCount;
@@ -650,6 +663,7 @@ namespace Spherechain
 
         public unsafe struct ResponseDef  // sc_response_def
         {
+            public uint StructSize;
             /// <summary>of each joint, before or after it; SC_NO_JOINT: none. Required</summary>
             public uint* Parents;
             public UIntPtr JointCount;
@@ -666,6 +680,7 @@ namespace Spherechain
 
         public unsafe struct ResponseFrame  // sc_response_frame
         {
+            public uint StructSize;
             public JointTransform* Joints;
             /// <summary>of the roots in the world; null: the identity</summary>
             public JointTransform* Place;

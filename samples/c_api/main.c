@@ -61,7 +61,7 @@ static sc_status play(const sc_model* model, sc_body* body, gltf_character* file
 
 int main(int argc, char** argv) {
   char message[256];
-  sc_model_def def = {0};
+  sc_model_def def = {.struct_size = sizeof def};
   sc_model* model = NULL;
   sc_body* body = NULL;
   gltf_character* file;

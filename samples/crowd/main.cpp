@@ -162,7 +162,11 @@ float waves(const void* metres_per_unit, Vec3 p) {
 void find_grounded(const Model& model, const std::vector<Pose>& poses, std::vector<Standing>& characters) {
   const AssetInfo info = model.info();
   const Vec3 up = info.up, o = info.origin;
-  const Ground ground{up, up.x * o.x + up.y * o.y + up.z * o.z, waves, &info.metres_per_unit};
+  Ground ground;
+  ground.up = up;
+  ground.height = up.x * o.x + up.y * o.y + up.z * o.z;
+  ground.terrain = waves;
+  ground.user = &info.metres_per_unit;
   Query all;  // touches, too
   all.classes = ~0U;
   Body body(model);

@@ -64,7 +64,8 @@ void fight(const std::vector<char>& file, const samples::GltfCharacter& clips) {
   check(blue.status());
   const AssetInfo info = model.info();
   const Transform red_place = place_of(info, false, 0), blue_place = place_of(info, true, kDistance * info.height);
-  const Ground floor{{0, 1, 0}, 0, nullptr, nullptr};  // in a glTF file y is up
+  Ground floor;
+  floor.up = {0, 1, 0};  // in a glTF file y is up
   Query all;
   all.classes = ~0U;  // touches, too
   all.full = 1;

@@ -40,7 +40,9 @@ class Character {
   Character(const char* asset, const char* source) : name(asset) {
     baker::AnimatedAsset animated(asset, source, baker::MotionChoice(), baker::FrameChoice());
     const std::string bytes = baker::read_file(asset);
-    const ModelDef def{bytes.data(), bytes.size(), nullptr, 0, SC_LAYOUT_UNSET, nullptr};
+    ModelDef def;
+    def.data = bytes.data();
+    def.size = bytes.size();
     load_ms = microseconds([&] { model = std::make_unique<Model>(def); }) / 1000;
     body = Body(*model);
     const int step = std::max(1, animated.frame_count() / kFrames);

@@ -63,8 +63,10 @@ enum class Question { kPenetrations, kContacts, kSpheres, kSteps, kGround, kBoun
 // A query, and the code with which the question must be refused; SC_OK: with none.
 struct DrawnQuery {
   Query query;
+  std::uint64_t added[4] = {};  // fields of a later version
   sc_code wanted = SC_OK;
 };
+static_assert(offsetof(DrawnQuery, added) == sizeof(Query));
 
 class Asking {
  public:
@@ -139,7 +141,7 @@ class Asking {
     const bool is_measured = question == Question::kPenetrations || question == Question::kGround;
     const bool is_of_itself = !of_two && (question == Question::kPenetrations || question == Question::kContacts);
     if (!random.one_in(4) || question == Question::kBounds) return out;
-    switch (random.below(6)) {
+    switch (random.below(7)) {
       case 0:
         query.target = draw_none<Target>(c_, 8);
         out.wanted = question == Question::kSteps ? SC_OK : SC_UNSUPPORTED_TARGET;
@@ -160,11 +162,26 @@ class Asking {
         query.radius = draw_none<Radius>(c_, 2);
         out.wanted = question == Question::kSpheres ? SC_BAD_VALUE : SC_OK;
         break;
+      case 5:
+        draw_size(out);
+        break;
       default:
         query.tolerance = random.one_in(2) ? -1 : std::numeric_limits<float>::quiet_NaN();
         break;
     }
     return out;
+  }
+
+  // The size of an older, a later or no version; what is behind the struct.
+  void draw_size(DrawnQuery& out) {
+    Random& random = c_.random;
+    const auto size = static_cast<std::uint32_t>(sizeof(Query));
+    const std::uint32_t past = 8 * random.below(5), garbage[] = {1, 4, size - 1, 4097, 0x7FFFFFFF, 0xFFFFFFFF};
+    out.query.struct_size = random.one_in(2) ? random.pick(garbage) : random.one_in(3) ? 0 : size + past;
+    const std::uint32_t stated = out.query.struct_size, field = random.below(4);
+    out.added[field] = random.one_in(2) ? random.bits() : 0;
+    const bool is_known = stated == 0 || stated == size + past;
+    out.wanted = is_known && (stated <= size + 8 * field || out.added[field] == 0) ? SC_OK : SC_BAD_VALUE;
   }
 
   void find(Body& body, const Body* other, const Query& query, Question question) {
@@ -197,7 +214,7 @@ class Asking {
         }
         return;
       case Question::kGround: {
-        Ground ground{{0, 1, 0}, 0, nullptr, nullptr};
+        Ground ground{.up = {0, 1, 0}};
         fill_figures(c_, &ground.height, 1);
         if (!(ground.height > -1e9F && ground.height < 1e9F)) ground.height = 0;
         return check(body.below(ground, query), query, body);

@@ -78,7 +78,7 @@ struct Buffers {
   std::size_t joint_count;
   Transform *joints, *ahead, *place;
   ResponseState* state;
-  Ground ground{{0, 1, 0}, 0, nullptr, nullptr};
+  Ground ground{.up = {0, 1, 0}};
 };
 
 void spoil_frame(Case& c, const Body& own, DrawnFrame& out) {

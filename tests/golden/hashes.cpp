@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cinttypes>
+#include <cstddef>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -30,9 +31,10 @@ void Hash::add(const PartContact& contact) {
 }
 
 void Hash::add(const Penetration& p) {
-  static_assert(sizeof p % sizeof(std::uint32_t) == 0, "words alone, without padding");
-  std::uint32_t words[sizeof p / sizeof(std::uint32_t)];
-  std::memcpy(words, &p, sizeof p);
+  constexpr std::size_t kBytes = offsetof(Penetration, measures) + offsetof(Measures, reserved);
+  static_assert(kBytes % sizeof(std::uint32_t) == 0, "words alone, without padding");
+  std::uint32_t words[kBytes / sizeof(std::uint32_t)];
+  std::memcpy(words, &p, kBytes);
   for (const std::uint32_t word : words) add(word);
 }
 

@@ -36,8 +36,8 @@ if(CASE MATCHES "which_parts|chromium|three")  # as npm installs it
 endif()
 
 if(CASE STREQUAL golden)
-  run(nothing ${WRITE_CLIP} ${ROOT}/tests/golden doll.clip doll.joints)
-  run(text ${NODE} ${here}/golden.mjs ${PACKAGE} ${ROOT}/tests/golden doll.clip doll.joints)
+  run(nothing ${WRITE_CLIP} ${ROOT}/tests/golden/0.1.0 doll.clip doll.joints)
+  run(text ${NODE} ${here}/golden.mjs ${PACKAGE} ${ROOT}/tests/golden/0.1.0 doll.clip doll.joints)
   message(STATUS "${text}")
 elseif(CASE STREQUAL api)
   run(text ${REFERENCE} ${OWN_BONES} human.palettes)

@@ -5,6 +5,7 @@
 // instruction set.
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -110,7 +111,13 @@ class Line {
     hash_.add(items, count);
     return word(total);
   }
-  Line& add(const Penetrations& found) { return list(found.items, found.count, found.total); }
+  Line& add(const Penetrations& found) {
+    constexpr std::size_t kBytes = offsetof(Penetration, measures) + offsetof(Measures, reserved);
+    for (const Penetration& one : found) {
+      hash_.add(reinterpret_cast<const char*>(&one), kBytes);
+    }
+    return word(found.total);
+  }
   Line& add(const Steps& found) { return list(found.items, found.count, found.count); }
   Line& add(const Contacts& found) {
     list(found.parts, found.part_count, found.part_count);

@@ -43,7 +43,7 @@ static void put(const void* entries, size_t size, size_t count) {
 
 static void respond(sc_body* body, const sc_body* other, const char* parents, const char* joints, int with_options) {
   size_t size, joints_size;
-  sc_response_def def = {0};
+  sc_response_def def = {.struct_size = sizeof def};
   def.parents = read_file(parents, &size);
   def.joint_count = size / sizeof *def.parents;
   sc_transform* clip = read_file(joints, &joints_size);
@@ -52,12 +52,12 @@ static void respond(sc_body* body, const sc_body* other, const char* parents, co
   require(sc_create_response(body, &def, &response));
   sc_transform* own = malloc(frame_size);
   const sc_transform place = {{0.25f, 0.5f, 0}, {0, 0.6f, 0, 0.8f}, {1, 1, 1}};
-  const sc_ground ground = {{0, 1, 0}, 0.75f, NULL, NULL};
+  const sc_ground ground = {.struct_size = sizeof ground, .up = {0, 1, 0}, .height = 0.75f};
   const uint32_t planted = 2;
   uint64_t state[SC_RESPONSE_WORDS] = {0};
   for (size_t i = 0; i < frames; ++i) {
     memcpy(own, clip + i * def.joint_count, frame_size);
-    sc_response_frame frame = {0};
+    sc_response_frame frame = {.struct_size = sizeof frame};
     frame.joints = own;
     frame.seconds = 1.0f / 32;
     if (with_options) {
@@ -90,13 +90,13 @@ int main(int argc, char** argv) {
   size_t size, bones_size;
   void* data = read_file(argv[1], &size);
   float* bones = read_file(argv[2], &bones_size);
-  sc_model_def def = {0};
+  sc_model_def def = {.struct_size = sizeof def};
   def.data = data;
   def.size = size;
   sc_model* model;
   require(sc_create_model(SC_ABI_VERSION, &def, &model, NULL, 0));
   const sc_asset_info info = sc_asset_get_info(sc_get_asset(model));
-  sc_body_def body_def = {0};
+  sc_body_def body_def = {.struct_size = sizeof body_def};
   body_def.max_triangles = kMaxTriangles;
   body_def.max_penetrations = kMaxPenetrations;
   body_def.finds_steps = 1;
@@ -114,7 +114,7 @@ int main(int argc, char** argv) {
     respond(body, other, argv[3], argv[4], 1);
     return 0;
   }
-  sc_query query = {0};
+  sc_query query = {.struct_size = sizeof query};
   query.full = 1;
   query.classes = ~0U;
   for (size_t i = 0; i < poses; ++i) {
@@ -141,7 +141,7 @@ int main(int argc, char** argv) {
     require(sc_find_penetrations(body, NULL, NULL, &found));
     put(found.items, sizeof *found.items, found.count);
 
-    sc_ground ground = {{0, 1, 0}, 0, NULL, NULL};
+    sc_ground ground = {.struct_size = sizeof ground, .up = {0, 1, 0}};
     require(sc_find_in_ground(body, &ground, &query, &found));
     put(found.items, sizeof *found.items, found.count);
 

@@ -37,7 +37,7 @@ class Wheel(unittest.TestCase):
             pip = [sys.executable, "-m", "pip", "install", "--no-index", "--no-deps", "--quiet", "--target", target, first]
             environment = {**os.environ, "PIP_ROOT_USER_ACTION": "ignore"}
             subprocess.run(pip, check=True, capture_output=True, env=environment)
-            asset = ROOT / "tests" / "golden" / "doll.sphc"
+            asset = ROOT / "tests" / "golden" / "0.1.0" / "doll.sphc"
             code = f"import spherechain; print(spherechain.__file__, spherechain.Model({str(asset)!r}).sphere_count)"
             done = subprocess.run([sys.executable, "-c", code], env={**environment, "PYTHONPATH": str(target)}, text=True,
                                   capture_output=True, check=True)

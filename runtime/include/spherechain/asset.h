@@ -9,7 +9,7 @@
 /* An opaque view of an asset's bytes. It owns nothing: the bytes must outlive it, unchanged. Copying it copies the
  * view. Any number of threads may read one asset. */
 typedef struct sc_asset {
-  uint64_t opaque[128] SC_ZERO;
+  uint64_t opaque[256] SC_ZERO;
 } sc_asset;
 
 #define SC_SIDE_LEFT 1

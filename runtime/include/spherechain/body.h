@@ -13,24 +13,27 @@
 typedef struct sc_body sc_body;
 
 typedef struct sc_body_def {
+  uint32_t struct_size SC_SIZE_OF(sc_body_def);
+  int32_t finds_steps SC_ZERO; /* 1: sc_find_steps() works; it needs much memory */
   /* Capacity for pairs of triangles that intersect; 0: half of the model's triangles, and at least 4,096. Where more
    * intersect, penetrations are found in several rounds, with the same results. If two parts alone have more, the first
    * so many of theirs are measured. */
   size_t max_triangles SC_ZERO;
   size_t max_penetrations SC_ZERO;       /* 0: 128; the worst are kept */
   const sc_model* largest_other SC_ZERO; /* of all that it will meet; null: none is larger than its own model */
-  int32_t finds_steps SC_ZERO;           /* 1: sc_find_steps() works; it needs much memory */
   const sc_allocator* allocator SC_ZERO; /* copied; null: the model's */
 } sc_body_def;
 
 /* The options of a question. Zeros, or a null pointer, give the faults that `play` and `check` report, but for those
  * between layers of one place: they ask for SC_SCOPE_LAYERS. */
 typedef struct sc_query {
+  uint32_t struct_size SC_SIZE_OF(sc_query);
   sc_scope scope SC_ZERO;
   /* 0: penetrations are measured quickly: faults in full but for their volume, others along one direction and without
    * visibility. Contacts are of body parts.
    * 1: all penetrations are measured in full. The faults are the same. Contacts are of spheres and triangles, too. */
   int32_t full SC_ZERO;
+  sc_radius radius SC_ZERO; /* of spheres and their pairs */
   /* Pairs of spheres that do not meet, in questions about a body with itself: sc_pair_words() words, laid out as in
    * asset.h; null: the asset's ignored pairs. */
   const uint64_t* ignored_pairs SC_ZERO;
@@ -52,7 +55,6 @@ typedef struct sc_query {
   const sc_penetration* previous SC_ZERO;
   size_t previous_count SC_ZERO;
   float tolerance SC_ZERO;  /* of steps, a share of the height; 0: 0.0001 */
-  sc_radius radius SC_ZERO; /* of spheres and their pairs */
   sc_target target SC_ZERO; /* the same answers on every one */
 } sc_query;
 
@@ -84,6 +86,7 @@ typedef struct sc_sphere_pairs {
 
 /* A plane, and how far the ground is above it. */
 typedef struct sc_ground {
+  uint32_t struct_size SC_SIZE_OF(sc_ground);
   /* The world's upward direction, of unit length. The character's own, sc_asset_info.up, may differ by degrees. */
   sc_vec3 up SC_ZERO;
   float height SC_ZERO; /* up . p = height on the plane */

@@ -55,6 +55,7 @@ typedef struct sc_penetration {
   sc_vec3 low, high; /* a box around that line; of the ground: around the skin below it */
   sc_skin_point deepest, deepest_other; /* the points that part last; deepest_other - deepest = distance * direction */
   sc_measures measures;
+  uint32_t reserved[4]; /* 0 */
 } sc_penetration;
 
 #define SC_NO_TRIANGLE 0xFFFFFFFFu

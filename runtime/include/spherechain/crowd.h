@@ -15,6 +15,7 @@ typedef struct sc_crowd_pair {
  *
  * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
 typedef struct sc_crowd_job {
+  uint32_t struct_size SC_SIZE_OF(sc_crowd_job);
   const sc_asset* asset SC_ZERO;
   size_t instance_count SC_ZERO; /* below 2^32 */
   /* Bones of instance 0 in the asset's order, not in that of a model's joints: sc_gather_bones(). Morph weights are not
@@ -69,6 +70,7 @@ typedef struct sc_scene_body {
  *
  * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
 typedef struct sc_scene_job {
+  uint32_t struct_size SC_SIZE_OF(sc_scene_job);
   const sc_scene_body* bodies SC_ZERO;
   size_t body_count SC_ZERO; /* at most 2^24 */
   /* 32 words; null: all layers meet. Bit k of word l: bodies of layer l meet those of layer k, and bit l of word k. */

@@ -16,13 +16,14 @@ typedef struct sc_allocator {
 typedef struct sc_model sc_model;
 
 typedef struct sc_model_def {
-  const void* data SC_ZERO; /* the bytes of a .sphc file, copied */
+  uint32_t struct_size SC_SIZE_OF(sc_model_def);
+  sc_matrix_layout inverse_bind_layout SC_ZERO; /* of the joints that have an inverse bind matrix */
+  const void* data SC_ZERO;                     /* the bytes of a .sphc file, copied */
   size_t size SC_ZERO;
   /* The engine's joints, in the order of its palettes; null: palettes come in the asset's own order of bones. */
   const sc_bone* joints SC_ZERO;
   size_t joint_count SC_ZERO;
-  sc_matrix_layout inverse_bind_layout SC_ZERO; /* of the joints that have an inverse bind matrix */
-  const sc_allocator* allocator SC_ZERO;        /* copied; null: malloc */
+  const sc_allocator* allocator SC_ZERO; /* copied; null: malloc */
 } sc_model_def;
 
 /* Where a triangle of the source belongs. */
@@ -37,7 +38,7 @@ extern "C" {
 #endif
 
 /* Pass SC_ABI_VERSION for `abi`. On failure *model is null and `message`, where it is not null, says what to do: a
- * status of sc_asset_open() or sc_bind_joints(), SC_NULL or SC_NO_MEMORY. */
+ * status of sc_asset_open() or sc_bind_joints(), SC_NULL, SC_BAD_VALUE or SC_NO_MEMORY. */
 SPHERECHAIN_API sc_status sc_create_model(uint32_t abi, const sc_model_def* def, sc_model** model, char* message,
                                           size_t message_size) SC_NOEXCEPT;
 SPHERECHAIN_API void sc_destroy_model(sc_model* model) SC_NOEXCEPT; /* null is fine */
@@ -75,7 +76,7 @@ class Model {
     status_ = sc_create_model(SC_ABI_VERSION, &def, &handle_, message_, sizeof message_);
   }
   Model(const void* data, size_t size, const Bone* joints, size_t joint_count, MatrixLayout layout) noexcept
-      : Model(ModelDef{data, size, joints, joint_count, layout, nullptr}) {}
+      : Model(make_def(data, size, joints, joint_count, layout)) {}
   Model(Model&& other) noexcept { *this = static_cast<Model&&>(other); }
   Model& operator=(Model&& other) noexcept {
     sc_model* const own = handle_;
@@ -107,6 +108,17 @@ class Model {
   float millimetres(float length) const noexcept { return 1000 * length * info().metres_per_unit; }
 
  private:
+  static ModelDef make_def(const void* data, size_t size, const Bone* joints, size_t joint_count,
+                           MatrixLayout layout) noexcept {
+    ModelDef def;
+    def.inverse_bind_layout = layout;
+    def.data = data;
+    def.size = size;
+    def.joints = joints;
+    def.joint_count = joint_count;
+    return def;
+  }
+
   sc_model* handle_ = nullptr;
   Status status_{};
   char message_[256] = {};

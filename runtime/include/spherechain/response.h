@@ -11,6 +11,7 @@ typedef struct sc_response sc_response;
 
 /* Joints are those of sc_model_def.joints, or the asset's bones where it had none. */
 typedef struct sc_response_def {
+  uint32_t struct_size SC_SIZE_OF(sc_response_def);
   const uint32_t* parents SC_ZERO; /* of each joint, before or after it; SC_NO_JOINT: none. Required */
   size_t joint_count SC_ZERO;
   /* How easily each joint turns, from 0, never, to 1; at most 16 may turn. Null: the joints of upper arms and forearms
@@ -47,6 +48,7 @@ typedef struct sc_contact_row {
 } sc_contact_row;
 
 typedef struct sc_response_frame {
+  uint32_t struct_size SC_SIZE_OF(sc_response_frame);
   /* Where each joint is in its parent's space. The rotations of those that turn are replaced; the rest stays as it is.
    */
   sc_transform* joints SC_ZERO;

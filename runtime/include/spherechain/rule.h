@@ -46,6 +46,7 @@ typedef struct sc_measures {
   float swallowed;      /* 0 to 1: of points in the middle of `part` the share that is inside `other`; where that holds
                            most of them, inside any part. 0 while no centre of its spheres is inside */
   int32_t through;      /* 1: a sphere's centre is inside, and its limb comes out again on the other side */
+  uint32_t reserved[4]; /* 0 */
 } sc_measures;
 
 /* The limits of the classes. Each reason that excuses an intersection (touch, fold, shell) allows a depth. An
@@ -72,6 +73,7 @@ typedef struct sc_rule {
   float loose_depth; /* of two pieces of skin; on parts that hang on each other any depth is allowed */
   float inside;      /* inside: at least this share of the part is swallowed; or it comes out again. From three quarters
                         of it on the allowed depths shrink to 0 */
+  float reserved[4]; /* 0; others are refused */
 } sc_rule;
 
 #define SC_RULE_VERSION 4

@@ -5,9 +5,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The version of the binary interface. It changes with every incompatible change of a struct or function.
- * sc_asset_open() compares the program's number with the library's and refuses another (SC_WRONG_ABI). */
-#define SC_ABI_VERSION 17
+/* The version of the binary interface. It changes with every incompatible change of a struct, an enum or a function.
+ * sc_asset_open() and sc_create_model() compare the program's number with the library's and refuse another
+ * (SC_WRONG_ABI). docs/integration.md has the promise. */
+#define SC_ABI_VERSION 18
 
 /* Marks what a shared library exports. The CMake target and pkg-config define SPHERECHAIN_SHARED where the library is
  * shared; SPHERECHAIN_BUILDING is defined only while the library itself is built. */
@@ -21,15 +22,25 @@
 #define SPHERECHAIN_API __declspec(dllimport)
 #endif
 
-/* Every struct and enum is defined once, for C and C++ alike. All fields default to zero: C++ initialises them, C
- * programs write `sc_query query = {0};`. Enums are 32-bit integers on both sides. */
+/* Every struct and enum is defined once, for C and C++ alike. All fields default to zero: C++ initialises them. Enums
+ * are 32-bit integers on both sides. Their values are never reassigned; later versions may add some.
+ *
+ * A struct that begins with struct_size may get more fields at its end, where 0 means: as before. C++ sets the size; C
+ * programs write `sc_query query = {.struct_size = sizeof query};`. With 0 the library reads the fields of release
+ * 0.1.0 alone. SC_BAD_VALUE with SC_FIELD_STRUCT_SIZE: no version has such a size, or a field is set that the library
+ * is too old to know.
+ *
+ * Every other struct keeps its size and its fields. Reserved fields are 0 until a version names them. */
 #if defined(__cplusplus)
 #define SC_ZERO \
   {}
+#define SC_SIZE_OF(type) \
+  { sizeof(type) }
 #define SC_NOEXCEPT noexcept
 #define SC_ENUM(name) enum name : int32_t
 #else
 #define SC_ZERO
+#define SC_SIZE_OF(type)
 #define SC_NOEXCEPT
 #define SC_ENUM(name)   \
   typedef int32_t name; \
@@ -79,7 +90,7 @@ SC_ENUM(sc_code){
     SC_NOT_IN_ASSET = 9,        /* the asset has no data for this: no bones, or no triangles */
     SC_UNSUPPORTED_TARGET = 10, /* this build or this machine lacks the instruction set */
     SC_NOT_AN_ASSET = 11,       /* the bytes are no .sphc file */
-    SC_OTHER_VERSION = 12,      /* the asset is of another format version: bake it again */
+    SC_OTHER_VERSION = 12,      /* the asset needs a later library, or is older than release 0.1.0 */
     SC_CORRUPT = 13,            /* the asset is cut short or damaged */
     SC_WRONG_ABI = 14,          /* the program was compiled with other headers than the library */
     SC_WRONG_SOURCE = 15,       /* these are not the vertices that the asset was baked from */
@@ -142,6 +153,7 @@ SC_ENUM(sc_field){
     SC_FIELD_ALLOCATOR = 46,
     SC_FIELD_QUERY = 47,
     SC_FIELD_PART_PAIRS = 48,
+    SC_FIELD_STRUCT_SIZE = 49,
 };
 
 /* The result of every operation: an error code, and the field that caused it. */

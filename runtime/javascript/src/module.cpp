@@ -22,31 +22,31 @@ static_assert(sizeof(void*) == 4 && sizeof(sc_status) == 2 * 4 && offsetof(sc_st
 static_assert(offsetof(sc_asset_info, vertex_count) == 6 * 4 && offsetof(sc_asset_info, writer) == 9 * 4);
 static_assert(offsetof(sc_asset_info, origin) == 16 * 4 && offsetof(sc_asset_info, metres_per_unit) == 29 * 4);
 static_assert(offsetof(sc_asset_info, ignored_pairs) == 30 * 4 && sizeof(sc_asset_info) == 32 * 4);
-static_assert(SC_ABI_VERSION == 17);
+static_assert(SC_ABI_VERSION == 18);
 static_assert(sizeof(sc_bone) == 2 * 4 && sizeof(sc_part) == 5 * 4 && sizeof(sc_rest_sphere) == 9 * 4);
-static_assert(sizeof(sc_model_def) == 6 * 4 && offsetof(sc_model_def, inverse_bind_layout) == 4 * 4);
-static_assert(sizeof(sc_body_def) == 5 * 4 && offsetof(sc_body_def, finds_steps) == 3 * 4);
+static_assert(sizeof(sc_model_def) == 7 * 4 && offsetof(sc_model_def, inverse_bind_layout) == 4);
+static_assert(sizeof(sc_body_def) == 6 * 4 && offsetof(sc_body_def, finds_steps) == 4);
 static_assert(sizeof(sc_triangle) == 3 * 4);
 static_assert(sizeof(sc_pose) == 9 * 4 && offsetof(sc_pose, morph_weights) == 4 * 4);
 static_assert(sizeof(sc_transform) == 10 * 4 && offsetof(sc_transform, scale) == 7 * 4);
-static_assert(sizeof(sc_rule) == 15 * 4 && offsetof(sc_rule, inside) == 14 * 4);
-static_assert(sizeof(sc_query) == 14 * 4 && offsetof(sc_query, rule) == 6 * 4 && offsetof(sc_query, radius) == 12 * 4);
-static_assert(sizeof(sc_ground) == 6 * 4 && offsetof(sc_ground, height) == 3 * 4);
+static_assert(sizeof(sc_rule) == 19 * 4 && offsetof(sc_rule, inside) == 14 * 4);
+static_assert(sizeof(sc_query) == 15 * 4 && offsetof(sc_query, radius) == 3 * 4 && offsetof(sc_query, rule) == 8 * 4);
+static_assert(sizeof(sc_ground) == 7 * 4 && offsetof(sc_ground, height) == 4 * 4);
 static_assert(sizeof(sc_penetrations) == 3 * 4);
 static_assert(sizeof(sc_contacts) == 8 * 4 && offsetof(sc_contacts, triangles) == 5 * 4);
 static_assert(sizeof(sc_sphere_pairs) == 5 * 4 && offsetof(sc_sphere_pairs, pairs) == 2 * 4);
 static_assert(sizeof(sc_part_contact) == 9 * 4 && offsetof(sc_part_contact, low) == 3 * 4);
 static_assert(sizeof(sc_triangle_contact) == 12 * 4 && offsetof(sc_triangle_contact, from) == 6 * 4);
-static_assert(sizeof(sc_penetration) == 47 * 4 && offsetof(sc_penetration, direction) == 4 * 4);
+static_assert(sizeof(sc_penetration) == 55 * 4 && offsetof(sc_penetration, direction) == 4 * 4);
 static_assert(offsetof(sc_penetration, centre) == 9 * 4 && offsetof(sc_penetration, deepest) == 18 * 4);
 static_assert(offsetof(sc_penetration, measures) == 32 * 4 && offsetof(sc_measures, relation) == 11 * 4);
-static_assert(offsetof(sc_measures, through) == 14 * 4);
+static_assert(sizeof(sc_measures) == 19 * 4 && offsetof(sc_measures, through) == 14 * 4);
 static_assert(SC_RESPONSE_WORDS == 480 && sizeof(sc_contact_row) == 14 * 4 &&
               offsetof(sc_contact_row, normal) == 9 * 4);
-static_assert(sizeof(sc_response_def) == 8 * 4 && offsetof(sc_response_def, part_pairs) == 5 * 4);
-static_assert(sizeof(sc_response_frame) == 20 * 4 && offsetof(sc_response_frame, seconds) == 4 * 4);
-static_assert(offsetof(sc_response_frame, others) == 9 * 4 && offsetof(sc_response_frame, target) == 14 * 4);
-static_assert(offsetof(sc_response_frame, rows) == 18 * 4);
+static_assert(sizeof(sc_response_def) == 9 * 4 && offsetof(sc_response_def, part_pairs) == 6 * 4);
+static_assert(sizeof(sc_response_frame) == 21 * 4 && offsetof(sc_response_frame, seconds) == 5 * 4);
+static_assert(offsetof(sc_response_frame, others) == 10 * 4 && offsetof(sc_response_frame, target) == 15 * 4);
+static_assert(offsetof(sc_response_frame, rows) == 19 * 4);
 static_assert(sizeof(sc_step_contact) == 11 * 4 && offsetof(sc_step_contact, triangle_a) == 6 * 4);
 
 namespace {

@@ -15,7 +15,7 @@ let loading = null;
 let call, bytes, words, floats;  // the module's functions, and views of all its memory
 let status, query, subject, pose, out, responseFrame, sentence;  // where calls pass structs
 const SENTENCE_BYTES = 256;
-const ABI_VERSION = 17, IGNORED_PAIRS = 30;  // SC_ABI_VERSION, and where sc_asset_info.ignored_pairs is: module.cpp asserts both
+const ABI_VERSION = 18, IGNORED_PAIRS = 30;  // SC_ABI_VERSION, and where sc_asset_info.ignored_pairs is: module.cpp asserts both
 const STATE_WORDS = 960, JOINT_FLOATS = 10, OTHERS_MAX = 8;  // twice SC_RESPONSE_WORDS; an sc_transform
 const handles = new WeakMap();  // where models, bodies, responses and ignored pairs are in memory, until they are disposed of
 
@@ -29,7 +29,7 @@ async function instantiate() {
   call = instance.exports;
   look();
   call._initialize?.();
-  [status, query, subject, pose, out, responseFrame, sentence] = [8, 60, 56, 40, 128, 80, SENTENCE_BYTES].map(allocate);
+  [status, query, subject, pose, out, responseFrame, sentence] = [8, 60, 80, 40, 128, 84, SENTENCE_BYTES].map(allocate);
   return new Spherechain();
 }
 
@@ -114,10 +114,11 @@ const vector = (...first) => ({
     floats.set(value, place / 4);
   },
 });
-const struct = fields => {
+// `reserved`: words at its end that are 0.
+const struct = (fields, reserved = 0) => {
   const names = Object.keys(fields), types = Object.values(fields);
   return {
-    words: types.reduce((sum, type) => sum + type.words, 0),
+    words: types.reduce((sum, type) => sum + type.words, reserved),
     make: () => Object.fromEntries(names.map((name, i) => [name, types[i].make()])),
     read(place, value) {
       for (let i = 0; i < names.length; place += 4 * types[i++].words) value[names[i]] = types[i].read(place, value[names[i]]);
@@ -126,6 +127,7 @@ const struct = fields => {
     write(place, value, what) {
       checkKeys(value, names, what);
       for (let i = 0; i < names.length; place += 4 * types[i++].words) types[i].write(place, value[names[i]], names[i]);
+      words.fill(0, place / 4, place / 4 + reserved);
     },
   };
 };
@@ -146,6 +148,7 @@ const copied = (sizeOf, write) => {
 };
 const copiedFloats = () => copied(value => 4 * value.length, (place, value) => floats.set(value, place / 4));
 
+const structSize = field(0, null, place => words.fill(0, place / 4, place / 4 + 1));  // 0: the fields of release 0.1.0
 const vec3 = vector(0, 0, 0), side = choice(null, 'left', 'right');
 const CLASSES = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration', 'inside'], classOf = choice(...CLASSES);
 const Info = struct({
@@ -166,25 +169,25 @@ const Measures = struct({
   depth: float, volume: measured, contourLength: float, visible: float, touching: float, facing: float, restDistance: float,
   thickness: measured, extent: measured, height: float, metre: float,
   relation: choice('apart', 'near', 'siblings', 'joined', 'two_bodies'), isOnePiece: flag, swallowed: float, through: flag,
-});
+}, 4);
 const Penetration = struct({
   part: int, other: int, joint: int, kind: classOf, direction: vec3, faultDepth: float, distance: float, centre: vec3, low: vec3, high: vec3,
   deepest: SkinPoint, deepestOther: SkinPoint, measures: Measures,
-});
+}, 4);
 const Rule = struct({
   version: int, touchDepth: float, touchMetres: float, touchMin: float, touchMax: float, touchTimes: float, extent: float,
   atRest: float, hidden: float, shell: float, fold: float, neighbours: float, foldDepth: float, looseDepth: float,
   inside: float,
-});
+}, 4);
 const BodyDef = struct({
-  maxTriangles: int, maxPenetrations: int, largestOther: handle('createModel()', () => Model), findsSteps: flag, allocator: int,
+  structSize, findsSteps: flag, maxTriangles: int, maxPenetrations: int, largestOther: handle('createModel()', () => Model), allocator: int,
 });
 const Pose = struct({
   bones: copiedFloats(), boneCount: int, boneLayout: int, boneStride: int, morphWeights: copiedFloats(),
   morphWeightCount: int, vertices: int, vertexCount: int, vertexStride: int,
 });
 const Transform = struct({ translation: vec3, rotation: vector(0, 0, 0, 1), scale: vector(1, 1, 1) });
-const Ground = struct({ up: vector(0, 1, 0), height: float, terrain: int, user: int });
+const Ground = struct({ structSize, up: vector(0, 1, 0), height: float, terrain: int, user: int });
 
 let defaultRule;
 const limits = copied(() => 4 * Rule.words, (place, value) => Rule.write(place, { ...defaultRule, ...value }, 'rule'));
@@ -200,7 +203,7 @@ const history = copied(value => 4 * Penetration.words * checkList(value, 'previo
   for (let i = 0; i < value.length; ++i) Penetration.write(place + 4 * Penetration.words * i, value[i], `previous[${i}]`);
 });
 const Query = struct({
-  scope: choice('apart', 'neighbours', 'all', 'layers'), full: flag, ignoredPairs: handle('createIgnoredPairs()', () => IgnoredPairs), ignoredParts: parts(),
+  structSize, scope: choice('apart', 'neighbours', 'all', 'layers'), full: flag, radius: choice('detect', 'fit'), ignoredPairs: handle('createIgnoredPairs()', () => IgnoredPairs), ignoredParts: parts(),
   ignoredPartsOfOther: parts(), partPairs: copied(value => 4 * value.length, (place, value) => words.set(value, place / 4)),
   rule: limits,
   classes: field(0, null, (place, value = [], name) => {
@@ -219,17 +222,17 @@ const Query = struct({
       words[place / 4 + 1] = value?.length ?? 0;
     },
   },
-  tolerance: float, radius: choice('detect', 'fit'), target: int,
+  tolerance: float, target: int,
 });
 
 const integers = () => copied(value => 4 * value.length, (place, value) => words.set(value, place / 4));
 const ContactRow = struct({ part: int, other: int, body: int, at: vec3, atOther: vec3, normal: vec3, gap: float, allowed: float });
 const ResponseDef = struct({
-  parents: integers(), jointCount: int, mobility: copiedFloats(), budget: copiedFloats(), hinges: copiedFloats(),
+  structSize, parents: integers(), jointCount: int, mobility: copiedFloats(), budget: copiedFloats(), hinges: copiedFloats(),
   partPairs: integers(), rule: limits, allocator: int,
 });
 const ResponseFrame = struct({
-  joints: copiedFloats(), place: copied(() => 4 * Transform.words, Transform.write), morphWeights: copiedFloats(), morphWeightCount: int,
+  structSize, joints: copiedFloats(), place: copied(() => 4 * Transform.words, Transform.write), morphWeights: copiedFloats(), morphWeightCount: int,
   seconds: float, weakness: float, rounds: int, ahead: copiedFloats(), aheadFrames: int,
   others: copied(value => 4 * value.length, (place, value) => value.forEach((other, i) => {
     words[place / 4 + i] = other instanceof Body ? handleOf(other, 'other body') : refuse(`others[${i}]: a body is wanted, not ${kindOf(other)}`);
@@ -254,7 +257,7 @@ class Spherechain {
     const matrices = count === 0 ? [] : joints.map(({ inverseBind }) => Float32Array.from(inverseBind));
     return lend([data, new Uint32Array(2 * names.length), ...texts, ...matrices], ([first, table, ...places]) => {
       names.forEach((_, i) => words.set([places[i], places[names.length + i] ?? 0], table / 4 + 2 * i));
-      words.set([first, data.length, joints ? table : 0, names.length, layoutOf(count), 0], subject / 4);
+      words.set([0, layoutOf(count), first, data.length, joints ? table : 0, names.length, 0], subject / 4);
       call.sc_create_model(status, ABI_VERSION, subject, out, sentence, SENTENCE_BYTES);
       check(true);
       return new Model(words[out / 4], joints?.length);
@@ -518,7 +521,7 @@ class Body {
 
 const RESPONSE_KEYS = ['parents', 'mobility', 'budget', 'hinges', 'partPairs', 'rule'];
 const FRAME_KEYS = ['seconds', 'place', 'morphWeights', 'weakness', 'rounds', 'ahead', 'aheadFrames', 'others', 'ground', 'planted'];
-const FRAME_JOINTS = 0, FRAME_TURNED = 15, FRAME_AT_BUDGET = 16, FRAME_REMAINING = 17, FRAME_ROWS = 18;  // words of an sc_response_frame
+const FRAME_JOINTS = 1, FRAME_TURNED = 16, FRAME_AT_BUDGET = 17, FRAME_REMAINING = 18, FRAME_ROWS = 19;  // words of an sc_response_frame
 
 class Response {
   #jointCount;

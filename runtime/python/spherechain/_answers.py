@@ -21,7 +21,7 @@ PENETRATION = np.dtype([
     ("deepest", _POINT), ("deepest_other", _POINT),
     ("depth", "f4"), ("volume", "f4"), ("contour_length", "f4"), ("visible", "f4"), ("touching", "f4"), ("facing", "f4"),
     ("rest_distance", "f4"), ("thickness", "f4"), ("extent", "f4"), ("height", "f4"), ("metre", "f4"),
-    ("relation", "i4"), ("is_one_piece", "i4"), ("swallowed", "f4"), ("through", "i4")])
+    ("relation", "i4"), ("is_one_piece", "i4"), ("swallowed", "f4"), ("through", "i4"), ("reserved", "u4", 8)])
 
 #: Two body parts whose skins intersect (sc_part_contact), and a box around the triangles that do.
 PART_CONTACT = np.dtype([("part_a", "u4"), ("part_b", "u4"), ("triangle_pairs", "u4"), ("low", "f4", 3), ("high", "f4", 3)])

@@ -137,6 +137,9 @@ class AssetView {
 
 static_assert(sizeof(AssetView) <= sizeof(sc_asset) && alignof(AssetView) <= alignof(sc_asset));
 
+// Whether the program was compiled with headers that this library serves; else writes a sentence.
+Status check_abi(std::uint32_t abi, Message& message);
+
 inline const AssetView& view_of(const sc_asset& asset) { return *reinterpret_cast<const AssetView*>(&asset); }
 inline bool is_open(const sc_asset* asset) { return asset != nullptr && view_of(*asset).is_open(); }
 

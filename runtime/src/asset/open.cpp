@@ -52,8 +52,8 @@ sc_code verify(const void* data, std::size_t size, Message& message) {
   const auto* const bytes = static_cast<const std::uint8_t*>(data);
   std::uint32_t version = 0;
   if (read_version(bytes, size, version) && version != kFormatVersion) {
-    message.wrong("format_version: %" PRIu32 ", but this runtime reads %" PRIu32 " only: bake it again", version,
-                  kFormatVersion);
+    message.wrong("format_version: %" PRIu32 ", but this runtime reads %" PRIu32 " only: %s", version, kFormatVersion,
+                  version < kFormatVersion ? "bake it again" : "update spherechain, or bake it with this version");
     return SC_OTHER_VERSION;
   }
   flatbuffers::Verifier verifier(bytes, size, kMaxDepth, kMaxTables);
@@ -66,6 +66,15 @@ sc_code verify(const void* data, std::size_t size, Message& message) {
 }
 
 }  // namespace
+
+Status check_abi(std::uint32_t abi, Message& message) {
+  if (abi == SC_ABI_VERSION) {
+    return done();
+  }
+  message.wrong("compiled with spherechain's headers of ABI version %" PRIu32 ", linked with its library of %d", abi,
+                SC_ABI_VERSION);
+  return refuse(SC_WRONG_ABI, SC_FIELD_NONE);
+}
 
 Status AssetView::open(const void* data, std::size_t size, Message& message) noexcept {
   const sc_code code = verify(data, size, message);
@@ -92,10 +101,9 @@ sc_status sc_asset_open(sc_asset* asset, uint32_t abi, const void* data, size_t 
                         size_t message_size) noexcept {
   using namespace spherechain;
   Message sentence(message, message_size);
-  if (abi != SC_ABI_VERSION) {
-    sentence.wrong("compiled with spherechain's headers of ABI version %" PRIu32 ", linked with its library of %d", abi,
-                   SC_ABI_VERSION);
-    return refuse(SC_WRONG_ABI, SC_FIELD_NONE);
+  const Status same = check_abi(abi, sentence);
+  if (same != SC_OK) {
+    return same;
   }
   if (asset == nullptr) {
     sentence.wrong("asset: null");

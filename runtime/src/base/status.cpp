@@ -80,6 +80,7 @@ constexpr std::pair<sc_field, const char*> kFieldNames[] = {
     {SC_FIELD_ALLOCATOR, "allocator"},
     {SC_FIELD_QUERY, "query"},
     {SC_FIELD_PART_PAIRS, "part_pairs"},
+    {SC_FIELD_STRUCT_SIZE, "struct_size"},
 };
 
 template <typename Texts, typename Value>

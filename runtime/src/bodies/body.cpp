@@ -6,6 +6,7 @@
 #include <new>
 
 #include "runtime/src/base/pair_bits.h"
+#include "runtime/src/base/sized.h"
 #include "runtime/src/base/status.h"
 #include "runtime/src/clusters/set_up.h"
 #include "runtime/src/gaps/gaps.h"
@@ -14,6 +15,9 @@
 #include "runtime/src/step/step_job.h"
 
 namespace spherechain {
+
+SPHERECHAIN_LAST_FIELD(sc_body_def, allocator);
+
 namespace {
 
 constexpr std::size_t kTrianglesMin = 4096;  // pairs that there is room for, at least
@@ -132,7 +136,11 @@ sc_status sc_create_body(const sc_model* model, const sc_body_def* def, sc_body*
   if (model == nullptr || body == nullptr) {
     return refuse(SC_NULL, model == nullptr ? SC_FIELD_ASSET : SC_FIELD_OUTPUT);
   }
-  const sc_body_def wanted = def == nullptr ? sc_body_def{} : *def;
+  sc_body_def wanted{};
+  const Status known = def == nullptr ? done() : read_struct(def, wanted);
+  if (known != SC_OK) {
+    return known;
+  }
   constexpr std::size_t kCountMax = std::size_t{1} << 31;
   if (wanted.max_triangles > kCountMax || wanted.max_penetrations > kCountMax) {
     return refuse(SC_BAD_VALUE, SC_FIELD_TRIANGLES);

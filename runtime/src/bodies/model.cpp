@@ -8,12 +8,16 @@
 
 #include "runtime/src/asset/asset_view.h"
 #include "runtime/src/base/message.h"
+#include "runtime/src/base/sized.h"
 #include "runtime/src/base/status.h"
 #include "runtime/src/clusters/set_up.h"
 #include "runtime/src/pairs/detect_job.h"
 #include "runtime/src/pose/pose.h"
 
 namespace spherechain {
+
+SPHERECHAIN_LAST_FIELD(sc_model_def, allocator);
+
 namespace {
 
 void* allocate_with_malloc(void*, std::size_t size, std::size_t alignment) {
@@ -49,7 +53,7 @@ std::size_t lay_out(sc_model& model, const sc_model_def& def, std::uint64_t* wor
   return memory.used();
 }
 
-Status fill(sc_model& model, std::uint32_t abi, const sc_model_def& def, char* message, std::size_t message_size) {
+Status fill(sc_model& model, const sc_model_def& def, char* message, std::size_t message_size) {
   Message sentence(message, message_size);
   const Status no_memory = refuse(SC_NO_MEMORY, SC_FIELD_NONE);
   if (!model.bytes.allocate(model.allocator, words_of(def.size))) {
@@ -57,7 +61,7 @@ Status fill(sc_model& model, std::uint32_t abi, const sc_model_def& def, char* m
     return no_memory;
   }
   std::memcpy(model.bytes.words, def.data, def.size);
-  Status status = sc_asset_open(&model.asset, abi, model.bytes.words, def.size, message, message_size);
+  Status status = sc_asset_open(&model.asset, SC_ABI_VERSION, model.bytes.words, def.size, message, message_size);
   if (status != SC_OK) {
     return status;
   }
@@ -118,12 +122,23 @@ sc_status sc_create_model(uint32_t abi, const sc_model_def* def, sc_model** mode
   if (model != nullptr) {
     *model = nullptr;
   }
-  if (model == nullptr || def == nullptr || def->data == nullptr) {
+  sc_model_def wanted{};
+  Status known = check_abi(abi, sentence);
+  if (known == SC_OK && def != nullptr) {
+    known = read_struct(def, wanted);
+    if (known != SC_OK) {
+      sentence.wrong("struct_size: not that of an sc_model_def, or fields are set that this library does not have");
+    }
+  }
+  if (known != SC_OK) {
+    return known;
+  }
+  if (model == nullptr || wanted.data == nullptr) {
     sentence.wrong("%s: null", model == nullptr ? "model" : "data");
     return refuse(SC_NULL, model == nullptr ? SC_FIELD_OUTPUT : SC_FIELD_DATA);
   }
   sc_allocator allocator{};
-  const Status complete = choose_allocator(def->allocator, malloc_allocator(), allocator);
+  const Status complete = choose_allocator(wanted.allocator, malloc_allocator(), allocator);
   if (complete != SC_OK) {
     sentence.wrong("allocator: a function is null");
     return complete;
@@ -135,7 +150,7 @@ sc_status sc_create_model(uint32_t abi, const sc_model_def* def, sc_model** mode
   }
   auto* const made = new (memory) sc_model{};
   made->allocator = allocator;
-  const Status status = fill(*made, abi, *def, message, message_size);
+  const Status status = fill(*made, wanted, message, message_size);
   if (status == SC_OK) {
     *model = made;
   } else {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "runtime/src/base/pair_bits.h"
+#include "runtime/src/base/sized.h"
 #include "runtime/src/base/status.h"
 #include "runtime/src/clusters/set_up.h"
 #include "runtime/src/contacts/contact_jobs.h"
@@ -20,6 +21,10 @@
 #include "runtime/src/step/step_job.h"
 
 namespace spherechain {
+
+SPHERECHAIN_LAST_FIELD(sc_query, target);
+SPHERECHAIN_LAST_FIELD(sc_ground, user);
+
 namespace {
 
 // Whether the bodies can be asked. Empties the result.
@@ -39,18 +44,23 @@ Status begin(const sc_body* body, const sc_body* other, Found* found) {
 }
 
 // A query of a body with itself, or of two. A field that would not be read is refused.
-Status check_query(const sc_query* query, const sc_body* other) {
-  if (query == nullptr) {
-    return done();
-  }
+Status check_query(const sc_query& query, const sc_body* other) {
   constexpr std::uint32_t kClasses = (1U << (SC_CLASS_INSIDE + 1)) - 1;
-  const bool has_parts = query->ignored_parts != nullptr || query->ignored_parts_of_other != nullptr;
-  const bool is_known =
-      (query->full == 0 || query->full == 1) && (query->classes == 0 || (query->classes & kClasses) != 0);
-  return !is_known                                             ? refuse(SC_BAD_VALUE, SC_FIELD_QUERY)
-         : other == nullptr && has_parts                       ? refuse(SC_BAD_VALUE, SC_FIELD_IGNORED_PARTS)
-         : other != nullptr && query->ignored_pairs != nullptr ? refuse(SC_BAD_VALUE, SC_FIELD_IGNORED_PAIRS)
-                                                               : done();
+  const bool has_parts = query.ignored_parts != nullptr || query.ignored_parts_of_other != nullptr;
+  const bool is_known = (query.full == 0 || query.full == 1) && (query.classes == 0 || (query.classes & kClasses) != 0);
+  return !is_known                                            ? refuse(SC_BAD_VALUE, SC_FIELD_QUERY)
+         : other == nullptr && has_parts                      ? refuse(SC_BAD_VALUE, SC_FIELD_IGNORED_PARTS)
+         : other != nullptr && query.ignored_pairs != nullptr ? refuse(SC_BAD_VALUE, SC_FIELD_IGNORED_PAIRS)
+                                                              : done();
+}
+
+// The caller's query; null: zeros.
+Status read_query(const sc_query* query, sc_query& out) { return query == nullptr ? done() : read_struct(query, out); }
+
+// The same, checked.
+Status take_query(const sc_query* query, const sc_body* other, sc_query& out) {
+  const Status status = read_query(query, out);
+  return status == SC_OK ? check_query(out, other) : status;
 }
 
 // The pairs of spheres that a query leaves out, for its jobs; null: the asset's.
@@ -58,8 +68,6 @@ const Filter* filter_of(sc_body& body, const sc_query& query) {
   body.filter = filter_of(asset_of(body), query.ignored_pairs);
   return query.ignored_pairs == nullptr ? nullptr : &body.filter;
 }
-
-sc_query query_of(const sc_query* query) { return query == nullptr ? sc_query{} : *query; }
 
 // Whether there is room for a question about two bodies: for all pairs of their parts, and so many words.
 Status check_room(const sc_body& body, const sc_body& other, std::size_t words) {
@@ -370,7 +378,7 @@ Status find_along(sc_body& body, const sc_body* other, const sc_query& query, sc
   Status status = begin(&body, other, &found);
   sc_query checked = query;
   checked.ignored_parts = other == nullptr ? nullptr : query.ignored_parts;
-  status = status == SC_OK ? check_query(&checked, other) : status;
+  status = status == SC_OK ? check_query(checked, other) : status;
   return status == SC_OK ? measure_bodies(body, other, query, true, found) : status;
 }
 
@@ -381,12 +389,12 @@ using namespace spherechain;
 extern "C" {
 
 sc_status sc_find_contacts(sc_body* body, const sc_body* other, const sc_query* query, sc_contacts* found) noexcept {
+  sc_query of{};
   Status status = begin(body, other, found);
-  status = status == SC_OK ? check_query(query, other) : status;
+  status = status == SC_OK ? take_query(query, other, of) : status;
   if (status != SC_OK) {
     return status;
   }
-  const sc_query of = query_of(query);
   status = of.full != 0 ? know_contacts(*body, other, of) : find_contacts(*body, other, of, false, false);
   if (status == SC_OK) {
     *found = body->contacts;
@@ -396,20 +404,19 @@ sc_status sc_find_contacts(sc_body* body, const sc_body* other, const sc_query* 
 
 sc_status sc_find_penetrations(sc_body* body, const sc_body* other, const sc_query* query,
                                sc_penetrations* found) noexcept {
+  sc_query of{};
   Status status = begin(body, other, found);
-  status = status == SC_OK ? check_query(query, other) : status;
-  if (status != SC_OK) {
-    return status;
-  }
-  return measure_bodies(*body, other, query_of(query), false, *found);
+  status = status == SC_OK ? take_query(query, other, of) : status;
+  return status == SC_OK ? measure_bodies(*body, other, of, false, *found) : status;
 }
 
 sc_status sc_find_sphere_pairs(sc_body* body, const sc_query* query, sc_sphere_pairs* found) noexcept {
+  sc_query of{};
   Status status = begin(body, nullptr, found);
+  status = status == SC_OK ? read_query(query, of) : status;
   if (status != SC_OK) {
     return status;
   }
-  const sc_query of = query_of(query);
   if (of.radius != SC_RADIUS_DETECT && of.radius != SC_RADIUS_FIT) {
     return refuse(SC_BAD_VALUE, SC_FIELD_RADIUS);
   }
@@ -425,20 +432,20 @@ sc_status sc_find_sphere_pairs(sc_body* body, const sc_query* query, sc_sphere_p
 
 sc_status sc_find_steps(sc_body* body, const sc_body* other, const sc_query* query, const sc_step_contact** steps,
                         size_t* count) noexcept {
+  sc_query of{};
   const Status no_count = begin(body, other, count);
   Status status = begin(body, other, steps);
   status = status == SC_OK ? no_count : status;
-  status = status == SC_OK ? check_query(query, other) : status;
+  status = status == SC_OK ? take_query(query, other, of) : status;
   if (status != SC_OK) {
     return status;
   }
-  if (query != nullptr && query->part_pairs != nullptr) {
+  if (of.part_pairs != nullptr) {
     return refuse(SC_BAD_VALUE, SC_FIELD_PART_PAIRS);
   }
   if (!body->before.is_given || (other != nullptr && !other->before.is_given)) {
     return refuse(SC_NOT_OPEN, SC_FIELD_BODIES);
   }
-  const sc_query of = query_of(query);
   StepJob job;
   const auto motion_of = [](const sc_body& from, const std::uint64_t* ignored_parts) {
     Motion motion;
@@ -475,22 +482,28 @@ sc_status sc_find_steps(sc_body* body, const sc_body* other, const sc_query* que
 
 sc_status sc_find_in_ground(sc_body* body, const sc_ground* ground, const sc_query* query,
                             sc_penetrations* found) noexcept {
-  const Status status = begin(body, nullptr, found);
+  sc_query of{};
+  sc_ground plane{};
+  Status status = begin(body, nullptr, found);
   if (status != SC_OK || ground == nullptr) {
     return status != SC_OK ? status : refuse(SC_NULL, SC_FIELD_FLOOR);
   }
-  if (query != nullptr && query->part_pairs != nullptr) {
+  status = read_query(query, of);
+  status = status == SC_OK ? read_struct(ground, plane) : status;
+  if (status != SC_OK) {
+    return status;
+  }
+  if (of.part_pairs != nullptr) {
     return refuse(SC_BAD_VALUE, SC_FIELD_PART_PAIRS);
   }
-  const sc_query of = query_of(query);
   const Span<Penetration> list = next_list(*body, of);
   FloorJob job;
   job.body = side_of(*body, of.ignored_parts);
   job.target = of.target;
-  job.up = ground->up;
-  job.height = ground->height;
-  job.terrain = ground->terrain;
-  job.user = ground->user;
+  job.up = plane.up;
+  job.height = plane.height;
+  job.terrain = plane.terrain;
+  job.user = plane.user;
   job.rule = of.rule;
   job.classes = classes_of(of);
   job.scratch = body->scratch;

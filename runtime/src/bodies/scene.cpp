@@ -6,12 +6,16 @@
 
 #include "runtime/src/base/least_entries.h"
 #include "runtime/src/base/memory.h"
+#include "runtime/src/base/sized.h"
 #include "runtime/src/base/status.h"
 #include "runtime/src/pairs/filter.h"
 #include "runtime/src/pose/transform.h"
 #include "spherechain/crowd.h"
 
 namespace spherechain {
+
+SPHERECHAIN_LAST_FIELD(sc_scene_job, pair_count);
+
 namespace {
 
 constexpr std::size_t kBodiesMax = std::size_t{1} << 24, kLayers = 32;
@@ -314,12 +318,14 @@ size_t sc_scene_scratch_words(size_t body_count) noexcept {
   return body_count > kBodiesMax ? 0 : 1 + (body_count * sizeof(SweptBox) + 7) / 8;
 }
 
-sc_status sc_find_meetings(sc_scene_job* job) noexcept {
-  if (job == nullptr) {
+sc_status sc_find_meetings(sc_scene_job* given) noexcept {
+  if (given == nullptr) {
     return refuse(SC_NULL, SC_FIELD_NONE);
   }
-  const Status status = check(*job);
-  return status == SC_OK ? Finder(*job, reinterpret_cast<SweptBox*>(job->scratch)).run(job->pair_count) : status;
+  sc_scene_job job{};
+  Status status = read_struct(given, job);
+  status = status == SC_OK ? check(job) : status;
+  return status == SC_OK ? Finder(job, reinterpret_cast<SweptBox*>(job.scratch)).run(given->pair_count) : status;
 }
 
 }  // extern "C"

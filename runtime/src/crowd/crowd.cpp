@@ -6,12 +6,16 @@
 
 #include "runtime/src/base/arithmetic.h"
 #include "runtime/src/base/pair_bits.h"
+#include "runtime/src/base/sized.h"
 #include "runtime/src/base/status.h"
 #include "runtime/src/crowd/checks.h"
 #include "runtime/src/crowd/lanes.h"
 #include "runtime/src/simd/simd.h"
 
 namespace spherechain {
+
+SPHERECHAIN_LAST_FIELD(sc_crowd_job, pair_count);
+
 namespace {
 
 constexpr std::size_t kAlignmentWords = 8;  // a cache line, and what a wide register wants
@@ -269,47 +273,52 @@ size_t sc_crowd_scratch_words(const sc_asset* asset, size_t task_count) noexcept
   return layout.shared_words() + (task_count == 0 ? 1 : task_count) * layout.task_words();
 }
 
-sc_status sc_detect_crowd(sc_crowd_job* job) noexcept {
-  if (job == nullptr) {
+sc_status sc_detect_crowd(sc_crowd_job* given) noexcept {
+  if (given == nullptr) {
     return refuse(SC_NULL, SC_FIELD_NONE);
   }
-  if (!is_open(job->asset)) {
-    return refuse(job->asset == nullptr ? SC_NULL : SC_NOT_OPEN, SC_FIELD_ASSET);
+  sc_crowd_job job{};
+  const Status known = read_struct(given, job);
+  if (known != SC_OK) {
+    return known;
   }
-  const AssetView& asset = view_of(*job->asset);
-  const Status status = check_crowd(asset, *job);
+  if (!is_open(job.asset)) {
+    return refuse(job.asset == nullptr ? SC_NULL : SC_NOT_OPEN, SC_FIELD_ASSET);
+  }
+  const AssetView& asset = view_of(*job.asset);
+  const Status status = check_crowd(asset, job);
   if (status != SC_OK) {
     return status;
   }
   Target resolved{};
-  if (!resolve_target(job->target, resolved)) {
+  if (!resolve_target(job.target, resolved)) {
     return refuse(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET);
   }
   const Layout layout(asset);
-  Crowd crowd{*job,
+  Crowd crowd{job,
               asset,
               layout,
               resolved,
-              job->spheres == nullptr ? 0 : sphere_stride(asset, *job),
+              job.spheres == nullptr ? 0 : sphere_stride(asset, job),
               lanes_of(resolved),
-              task_count(*job),
-              asset.rest_pairs(job->radius),
-              {job->scratch, layout.bit_words},
-              {job->scratch + layout.bit_words, layout.bit_words}};
-  if (job->pose.bones != nullptr && job->instance_count > 0) {
-    crowd.bones = refit_inputs(asset, job->pose, job->radius);
+              task_count(job),
+              asset.rest_pairs(job.radius),
+              {job.scratch, layout.bit_words},
+              {job.scratch + layout.bit_words, layout.bit_words}};
+  if (job.pose.bones != nullptr && job.instance_count > 0) {
+    crowd.bones = refit_inputs(asset, job.pose, job.radius);
   }
   choose_pairs(crowd);
   for (std::size_t task = 0; task < crowd.task_count; ++task) {
     crowd.scratch_of(task)[0] = 0;
   }
   run_tasks(crowd);
-  job->pair_count = crowd.pairs_before(crowd.task_count);
-  if (job->pair_capacity > 0 && crowd.task_count > 1 && !join_lists(crowd)) {
+  given->pair_count = job.pair_count = crowd.pairs_before(crowd.task_count);
+  if (job.pair_capacity > 0 && crowd.task_count > 1 && !join_lists(crowd)) {
     crowd.list_only = true;
     run_tasks(crowd);
   }
-  return job->pair_capacity > 0 && job->pair_count > job->pair_capacity ? refuse(SC_OVERFLOW, SC_FIELD_PAIRS) : done();
+  return job.pair_capacity > 0 && job.pair_count > job.pair_capacity ? refuse(SC_OVERFLOW, SC_FIELD_PAIRS) : done();
 }
 
 }  // extern "C"

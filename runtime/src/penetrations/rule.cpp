@@ -120,9 +120,11 @@ Status check_rule(const sc_rule* rule) {
   const float limits[] = {rule->touch_depth, rule->touch_metres, rule->touch_min,   rule->touch_max, rule->touch_times,
                           rule->extent,      rule->at_rest,      rule->hidden,      rule->shell,     rule->fold,
                           rule->neighbours,  rule->fold_depth,   rule->loose_depth, rule->inside};
+  const bool is_known =
+      rule->version == SC_RULE_VERSION &&
+      std::all_of(std::begin(rule->reserved), std::end(rule->reserved), [](float r) { return r == 0; });
   const bool are_finite = std::all_of(std::begin(limits), std::end(limits), [](float l) { return std::isfinite(l); });
-  return rule->version == SC_RULE_VERSION && are_finite && rule->touch_depth >= 0 ? done()
-                                                                                  : refuse(SC_BAD_VALUE, SC_FIELD_RULE);
+  return is_known && are_finite && rule->touch_depth >= 0 ? done() : refuse(SC_BAD_VALUE, SC_FIELD_RULE);
 }
 
 double containment_of(const Rule& rule, double swallowed) {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <iterator>
 
+#include "runtime/src/base/sized.h"
 #include "runtime/src/base/status.h"
 #include "runtime/src/pose/pose.h"
 #include "runtime/src/response/response.h"
@@ -13,6 +14,9 @@
 #include "runtime/src/response/solve.h"
 
 namespace spherechain {
+
+SPHERECHAIN_LAST_FIELD(sc_response_frame, row_count);
+
 namespace {
 
 constexpr double kRelease = 0.03;       // seconds, in which a turn that nothing asks for shrinks to 1 / e
@@ -285,37 +289,25 @@ Status check(const sc_response& response, const sc_response_frame& frame) {
              : done();
 }
 
-}  // namespace
-}  // namespace spherechain
-
-using namespace spherechain;
-
-extern "C" sc_status sc_respond(sc_response* response, uint64_t* state, sc_response_frame* frame) noexcept {
-  if (response == nullptr || state == nullptr || frame == nullptr) {
-    return refuse(SC_NULL, response == nullptr ? SC_FIELD_BODIES : SC_FIELD_OUTPUT);
-  }
-  sc_response& own = *response;
-  Status status = check(own, *frame);
-  if (status != SC_OK) {
-    return status;
-  }
-  frame->turned = frame->at_budget = 0;
-  frame->remaining = 0;
-  frame->rows = own.listed;
-  frame->row_count = 0;
+// A checked frame.
+Status respond(sc_response& own, std::uint64_t* state, sc_response_frame& frame) {
+  frame.turned = frame.at_budget = 0;
+  frame.remaining = 0;
+  frame.rows = own.listed;
+  frame.row_count = 0;
   State memory = load_state(state);
-  own.place = frame->place == nullptr ? kUnmoved : affine_of(*frame->place);
-  own.planted_count = static_cast<std::uint32_t>(frame->planted_count);
-  std::copy_n(frame->planted, frame->planted_count, own.planted);
+  own.place = frame.place == nullptr ? kUnmoved : affine_of(*frame.place);
+  own.planted_count = static_cast<std::uint32_t>(frame.planted_count);
+  std::copy_n(frame.planted, frame.planted_count, own.planted);
   const std::size_t count = own.turning_count;
   if (count == 0) {
     return done();
   }
-  const bool is_ahead = frame->ahead_frames > 0;
+  const bool is_ahead = frame.ahead_frames > 0;
   Turns turns, output;
-  status = find_turns(own, *frame, is_ahead ? frame->ahead : frame->joints, memory, turns, frame->at_budget);
+  Status status = find_turns(own, frame, is_ahead ? frame.ahead : frame.joints, memory, turns, frame.at_budget);
   if (status == SC_OK && !is_ahead) {
-    status = take_back(own, *frame, turns);
+    status = take_back(own, frame, turns);
   }
   if (status != SC_OK) {
     return status;
@@ -326,27 +318,51 @@ extern "C" sc_status sc_respond(sc_response* response, uint64_t* state, sc_respo
     turns[t] = is_clear && length(turns[t]) < kNothing ? Double3{0, 0, 0} : turns[t];
   }
   keep_rows(own, memory);
-  frame->remaining = static_cast<float>(own.fault_depth);
+  frame.remaining = static_cast<float>(own.fault_depth);
   std::copy_n(turns, count, output);
   if (is_ahead) {
-    smooth(own, memory, frame->ahead_frames, turns, output);
-    place_joints(skeleton_of(own), frame->joints, own.place, own.animated);
-    hold_planted(own, frame->joints, output);
-    status = pose(own, *frame, frame->joints, output);
+    smooth(own, memory, frame.ahead_frames, turns, output);
+    place_joints(skeleton_of(own), frame.joints, own.place, own.animated);
+    hold_planted(own, frame.joints, output);
+    status = pose(own, frame, frame.joints, output);
     if (status != SC_OK) {
       return status;
     }
   }
-  list_rows(own, *frame);
+  list_rows(own, frame);
   for (std::size_t t = 0; t < count; ++t) {
     if (!is_zero(output[t])) {
-      sc_transform& joint = frame->joints[own.turning[t].joint];
+      sc_transform& joint = frame.joints[own.turning[t].joint];
       set_rotation(joint, turned(joint, output[t]));
-      ++frame->turned;
+      ++frame.turned;
     }
   }
   memory.has_begun = 1;
   store(turns, count, memory.turns);
   std::memcpy(state, &memory, sizeof memory);
   return done();
+}
+
+}  // namespace
+}  // namespace spherechain
+
+using namespace spherechain;
+
+extern "C" sc_status sc_respond(sc_response* response, uint64_t* state, sc_response_frame* given) noexcept {
+  if (response == nullptr || state == nullptr || given == nullptr) {
+    return refuse(SC_NULL, response == nullptr ? SC_FIELD_BODIES : SC_FIELD_OUTPUT);
+  }
+  sc_response_frame frame{};
+  Status status = read_struct(given, frame);
+  status = status == SC_OK ? check(*response, frame) : status;
+  if (status != SC_OK) {
+    return status;
+  }
+  status = respond(*response, state, frame);
+  given->turned = frame.turned;
+  given->at_budget = frame.at_budget;
+  given->remaining = frame.remaining;
+  given->rows = frame.rows;
+  given->row_count = frame.row_count;
+  return status;
 }

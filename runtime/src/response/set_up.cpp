@@ -6,12 +6,16 @@
 #include <new>
 
 #include "runtime/src/base/pair_bits.h"
+#include "runtime/src/base/sized.h"
 #include "runtime/src/base/status.h"
 #include "runtime/src/clusters/set_up.h"
 #include "runtime/src/penetrations/rule.h"
 #include "runtime/src/response/response.h"
 
 namespace spherechain {
+
+SPHERECHAIN_LAST_FIELD(sc_response_def, allocator);
+
 namespace {
 
 constexpr double kBudget = 1.05, kBudgetMost = 2;  // radians
@@ -241,34 +245,39 @@ using namespace spherechain;
 
 extern "C" {
 
-sc_status sc_create_response(sc_body* body, const sc_response_def* def, sc_response** response) noexcept {
+sc_status sc_create_response(sc_body* body, const sc_response_def* given, sc_response** response) noexcept {
   if (response != nullptr) {
     *response = nullptr;
   }
-  if (body == nullptr || def == nullptr || response == nullptr || def->parents == nullptr) {
+  sc_response_def def{};
+  const Status known = given == nullptr ? done() : read_struct(given, def);
+  if (known != SC_OK) {
+    return known;
+  }
+  if (body == nullptr || response == nullptr || def.parents == nullptr) {
     return refuse(SC_NULL, body == nullptr       ? SC_FIELD_BODIES
                            : response == nullptr ? SC_FIELD_OUTPUT
                                                  : SC_FIELD_PARENTS);
   }
   sc_response made{};
   made.body = body;
-  made.rule = def->rule == nullptr ? sc_default_rule() : *def->rule;
-  if (def->joint_count < joints_of(*body->model)) {
+  made.rule = def.rule == nullptr ? sc_default_rule() : *def.rule;
+  if (def.joint_count < joints_of(*body->model)) {
     return refuse(SC_TOO_SMALL, SC_FIELD_JOINTS);
   }
-  const Status rule = check_rule(def->rule);
+  const Status rule = check_rule(def.rule);
   if (rule != SC_OK) {
     return rule;
   }
-  const Status complete = choose_allocator(def->allocator, body->allocator, made.allocator);
+  const Status complete = choose_allocator(def.allocator, body->allocator, made.allocator);
   if (complete != SC_OK) {
     return complete;
   }
-  if (!made.block.allocate(made.allocator, lay_out(made, def->joint_count, nullptr))) {
+  if (!made.block.allocate(made.allocator, lay_out(made, def.joint_count, nullptr))) {
     return refuse(SC_NO_MEMORY, SC_FIELD_NONE);
   }
-  lay_out(made, def->joint_count, made.block.words);
-  const Status status = fill(made, *def);
+  lay_out(made, def.joint_count, made.block.words);
+  const Status status = fill(made, def);
   if (status != SC_OK) {
     made.block.release(made.allocator);
     return status;

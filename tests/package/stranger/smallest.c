@@ -8,7 +8,7 @@ static float matrices[12 * 64];
 
 int main(int argc, char** argv) {
   FILE* file = fopen(argc > 1 ? argv[1] : "", "rb");
-  sc_model_def def = {0};
+  sc_model_def def = {.struct_size = sizeof def};
   sc_model* model = NULL;
   sc_body* body = NULL;
   sc_contacts found;

@@ -21,7 +21,7 @@ static void* read_file(const char* path, size_t* size) {
 }
 
 int main(int argc, char** argv) {
-  sc_model_def def = {0};
+  sc_model_def def = {.struct_size = sizeof def};
   void* bytes = read_file(argc > 1 ? argv[1] : "", &def.size);
   sc_model* model = NULL;
   sc_body* body = NULL;

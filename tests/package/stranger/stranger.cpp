@@ -124,7 +124,9 @@ std::size_t call_body(const Model& model, const Pose& pose) {
   expect(body.penetrations(other, query).count > 0 && body.status() == SC_OK, "penetrations of two");
   Vec3 low, high;
   expect(body.bounds(low, high) == SC_OK && low.x < high.x, "bounds");
-  const Ground ground{{1, 0, 0}, high.x, nullptr, nullptr};
+  Ground ground;
+  ground.up = {1, 0, 0};
+  ground.height = high.x;
   expect(body.below(ground, query).count > 0 && body.status() == SC_OK, "the ground");
   expect(body.sphere_pairs().sphere_count == model.info().sphere_count, "sphere pairs");
   expect(body.set_pose(pose) == SC_OK && body.steps().count >= contacts.part_count, "steps");

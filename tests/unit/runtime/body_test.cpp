@@ -42,8 +42,12 @@ struct Winding {
     for (std::size_t b = kBones; b-- > 0;) joints.push_back(sc_asset_bone(&opened->asset, b));
   }
   Model model(const sc_allocator* allocator = nullptr) const {
-    return Model(
-        ModelDef{opened->bytes.data(), opened->bytes.size(), joints.data(), joints.size(), SC_ROWS_3X4, allocator});
+    return Model(ModelDef{.inverse_bind_layout = SC_ROWS_3X4,
+                          .data = opened->bytes.data(),
+                          .size = opened->bytes.size(),
+                          .joints = joints.data(),
+                          .joint_count = joints.size(),
+                          .allocator = allocator});
   }
   // The last bone stands for what none moves.
   static std::vector<Matrix> bones(unsigned seed) {
@@ -151,7 +155,7 @@ TEST_CASE("a body finds what the jobs find, with the engine's joints, the worst 
     }
     std::set<std::tuple<std::uint32_t, std::uint32_t, PenetrationClass, float>> faults[2];
     for (const int full : {0, 1}) {
-      for (const Penetration& one : body.penetrations({SC_SCOPE_ALL, full})) {
+      for (const Penetration& one : body.penetrations({.scope = SC_SCOPE_ALL, .full = full})) {
         faults[full].emplace(one.part, one.other, one.kind, one.measures.depth);
       }
     }
@@ -184,7 +188,7 @@ TEST_CASE("a body finds what the jobs find, with the engine's joints, the worst 
 TEST_CASE("where there is no room for all triangles, or for all penetrations, the answers are the same, or the worst") {
   const Winding winding;
   const Model model = winding.model();
-  Body roomy(model), narrow(model, BodyDef{400, 3});
+  Body roomy(model), narrow(model, BodyDef{.max_triangles = 400, .max_penetrations = 3});
   Query query;
   query.scope = SC_SCOPE_ALL;
   query.classes = kAllClasses;
@@ -234,7 +238,7 @@ TEST_CASE("two bodies, the ground and the way between two poses give what the jo
   find.a.pose = pose_of(of_one[1]);
   find.b.pose = pose_of(of_other[1]);
   const SkinContacts contacts = find_contacts(find);
-  const Contacts found = one.contacts(other, {SC_SCOPE_APART, 1});
+  const Contacts found = one.contacts(other, {.full = 1});
   CHECK(same_bits({found.triangles, found.triangles + found.triangle_count}, contacts.triangles));
   CHECK(found.triangle_count > 0);
   BodyPenetrationJob measure_job;
@@ -267,7 +271,7 @@ TEST_CASE("two bodies, the ground and the way between two poses give what the jo
   CHECK(same_bits({steps.items, steps.items + steps.count}, find_contacts(step).contacts));
   CHECK(steps.count > 0);
 
-  const Ground ground{{0, 1, 0}, 0.3F, nullptr, nullptr};
+  const Ground ground{.up = {0, 1, 0}, .height = 0.3F};
   query.classes = kAllClasses;
   const Penetrations below = other.below(ground, query);
   REQUIRE(other.status() == SC_OK);
@@ -288,7 +292,7 @@ TEST_CASE("with a limit the deepest parts below the ground are listed, whatever 
   int not_the_first = 0;
   for (unsigned frame = 0; frame < 10; ++frame) {
     REQUIRE(body.set_pose(pose_of(Winding::bones(frame))) == SC_OK);
-    const Ground ground{{0, 1, 0}, 0.5F, nullptr, nullptr};
+    const Ground ground{.up = {0, 1, 0}, .height = 0.5F};
     Query query;
     query.classes = kAllClasses;
     const Penetrations found = body.below(ground, query);
@@ -332,12 +336,12 @@ TEST_CASE("contacts with another body are of the pose that it has now") {
   Body body(model), other(model);
   REQUIRE(body.set_pose(pose_of(Winding::bones(1))) == SC_OK);
   REQUIRE(other.set_pose(pose_of(Winding::bones(2))) == SC_OK);
-  const std::size_t near = body.contacts(other, {SC_SCOPE_APART, 1}).triangle_total;
+  const std::size_t near = body.contacts(other, {.full = 1}).triangle_total;
   CHECK(near > 0);
   other = Body(model);  // perhaps where the old one was
   const Transform away{{1000, 0, 0}, {0, 0, 0, 1}, {1, 1, 1}};
   REQUIRE(other.set_pose(pose_of(Winding::bones(2)), away) == SC_OK);
-  CHECK(body.contacts(other, {SC_SCOPE_APART, 1}).triangle_total == 0);
+  CHECK(body.contacts(other, {.full = 1}).triangle_total == 0);
 }
 
 TEST_CASE("directions of faults stay steady with the last list as history") {
@@ -659,7 +663,7 @@ TEST_CASE("a question with a wrong argument finds nothing and names the field") 
   query.part_pairs = no_parts.data();
   body.steps(query);
   CHECK(body.status() == sc_status{SC_BAD_VALUE, SC_FIELD_PART_PAIRS});
-  body.below({{0, 1, 0}, 0, nullptr, nullptr}, query);
+  body.below({.up = {0, 1, 0}}, query);
   CHECK(body.status() == sc_status{SC_BAD_VALUE, SC_FIELD_PART_PAIRS});
   Vec3 low, high;
   CHECK(sc_get_bounds(body.handle(), nullptr, &high) == sc_status{SC_NULL, SC_FIELD_OUTPUT});

@@ -33,7 +33,7 @@ static void call_accessors(const sc_asset* asset, const float* rest, size_t vert
 }
 
 static void call_crowd(const sc_asset* asset, const sc_pose* pose, c_calls_result* out) {
-  sc_crowd_job crowd = {0};
+  sc_crowd_job crowd = {.struct_size = sizeof crowd};
   sc_scene_job scene = {0};
   sc_scene_body bodies[2] = {{0}, {0}};
   uint32_t pair_counts[1];
@@ -85,10 +85,10 @@ static void call_binding(const sc_asset* asset, const sc_pose* pose, c_calls_res
 }
 
 static void call_model_and_body(const void* data, size_t size, const sc_pose* pose, c_calls_result* out) {
-  sc_model_def def = {0};
-  sc_body_def body_def = {0};
-  sc_query query = {0};
-  sc_ground ground = {0};
+  sc_model_def def = {.struct_size = sizeof def};
+  sc_body_def body_def = {.struct_size = sizeof body_def};
+  sc_query query = {.struct_size = sizeof query};
+  sc_ground ground = {.struct_size = sizeof ground};
   sc_model* model = NULL;
   sc_body *body = NULL, *other = NULL;
   sc_contacts contacts;

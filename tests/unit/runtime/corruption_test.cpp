@@ -84,8 +84,10 @@ TEST_CASE("an asset of another format version is refused: bake it again") {
     parts.format_version = version;
     const OpenedAsset other(parts);
     CHECK(other.status == sc_status{SC_OTHER_VERSION, SC_FIELD_DATA});
-    CHECK(other.message == "format_version: " + std::to_string(version) + ", but this runtime reads " +
-                               std::to_string(kFormatVersion) + " only: bake it again");
+    CHECK(other.message ==
+          "format_version: " + std::to_string(version) + ", but this runtime reads " + std::to_string(kFormatVersion) +
+              " only: " +
+              (version < kFormatVersion ? "bake it again" : "update spherechain, or bake it with this version"));
   }
 }
 

@@ -19,7 +19,7 @@ TEST_CASE("every code and every field has words of its own, and one that does no
     CHECK(std::string(text_of(count)) == text_of(-1));
   };
   check([](int i) { return sc_code_text(static_cast<sc_code>(i)); }, SC_DEVICE_TOO_SMALL + 1);
-  check([](int i) { return sc_field_name(static_cast<sc_field>(i)); }, SC_FIELD_PART_PAIRS + 1);
+  check([](int i) { return sc_field_name(static_cast<sc_field>(i)); }, SC_FIELD_STRUCT_SIZE + 1);
   CHECK(std::string(sc_field_name(SC_FIELD_BONES)) == "pose.bones");
 }
 
