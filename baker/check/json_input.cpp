@@ -13,7 +13,9 @@ namespace spherechain::baker {
 nlohmann::ordered_json parse_input(const std::string& text, const std::string& file, const std::string& refusal) {
   constexpr int kNestedMax = 100;
   const std::string start = file + ": " + refusal + ": ";
-  if (json_depth(text) > kNestedMax) throw Error(ExitCode::kFile, start + "it is nested too deeply");
+  const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  const bool may_be_json = first != std::string::npos && (text[first] == '{' || text[first] == '[');
+  if (may_be_json && json_depth(text) > kNestedMax) throw Error(ExitCode::kFile, start + "it is nested too deeply");
   try {
     return nlohmann::ordered_json::parse(text);
   } catch (const nlohmann::json::parse_error& error) {

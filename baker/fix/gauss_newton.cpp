@@ -16,8 +16,7 @@ namespace {
 constexpr double kStepLimit = to_radians(10);  // of a joint in a round
 constexpr double kNearStart = 3;  // cost of leaving the turns at the start of a round, while there is a fault
 constexpr double kTie = 1e7;      // weight that keeps a loop's ends equal
-constexpr double kNearBudget = 0.7;
-constexpr double kBudgetWeight = 1e6, kAcrossWeight = 3e4;             // of a residual of one radian
+constexpr double kNearBudget = 0.7, kBudgetWeight = 1e6;               // of a residual of one radian
 constexpr double kSeparationWeight = 1e4, kSeparationWeightMax = 1e5;  // it doubles each round
 
 void open_windows(MendState& state) {
@@ -37,21 +36,16 @@ void add_loop_constraints(const TurnedClip& clip, std::vector<Constraint>& const
   }
 }
 
-// Turns near the budget must not leave it, and hardly change direction, which would seem to be a way around it. If they
-// were only cut after each round, frames nearby would know nothing of it and turn elsewhere.
+// Turns near the budget must not leave it. If they were only cut after each round, frames nearby would know nothing of
+// it and turn elsewhere.
 void add_budget_limits(const MendState& state, std::vector<Constraint>& constraints) {
   const std::size_t count = state.facts.clip.count();
   for (std::size_t i = 0; i < state.turns.size(); ++i) {
     const Vec3& turn = state.turns[i];
     if (turn.norm() < kNearBudget * state.budget) continue;
-    const Vec3 along = turn.normalized(), across = along.unitOrthogonal();
-    const auto limit = [&](const Vec3& axis, double target, double below, double above) {
-      constraints.push_back(
-          {{{static_cast<int>(i / count), static_cast<Index>(i % count), axis}}, target, below, above});
-    };
-    limit(along, state.budget, 0, kBudgetWeight);
-    limit(across, 0, kAcrossWeight, kAcrossWeight);
-    limit(along.cross(across), 0, kAcrossWeight, kAcrossWeight);
+    const auto frame = static_cast<int>(i / count);
+    constraints.push_back(
+        {{{frame, static_cast<Index>(i % count), turn.normalized()}}, state.budget, 0, kBudgetWeight});
   }
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 #include <vector>
@@ -68,6 +69,14 @@ int separate_within_budgets(MendState& state) {
   return rounds;
 }
 
+std::set<int> turned_frames(const MendState& state) {
+  std::set<int> out;
+  for (std::size_t i = 0; i < state.turns.size(); ++i) {
+    if (!state.turns[i].isZero(0)) out.insert(static_cast<int>(i / state.facts.clip.count()));
+  }
+  return out;
+}
+
 // Smoothing moves parts into each other again. A few more rounds part them, and smoothing has less to do.
 void settle(MendState& state) {
   for (int round = 0; round < kSettleRounds; ++round) {
@@ -79,12 +88,28 @@ void settle(MendState& state) {
   calm_turns(state.facts.clip, state.facts.height, state.facts.loops, state.turns);
 }
 
-std::set<int> turned_frames(const MendState& state) {
-  std::set<int> out;
-  for (std::size_t i = 0; i < state.turns.size(); ++i) {
-    if (!state.turns[i].isZero(0)) out.insert(static_cast<int>(i / state.facts.clip.count()));
+// Takes back turns that make something worse, from the turns as they are and from settled ones. Settling helps in most
+// crowded places, and harms in some. Keeps the turns that leave least.
+void take_back_or_settle(MendState& state) {
+  const Turns start = state.turns;
+  const std::vector<WorkingEvent> events = state.goals.events;
+  Turns best;
+  double least = HUGE_VAL;
+  for (const bool settles : {false, true}) {
+    state.turns = start;
+    state.goals.events = events;
+    if (settles) settle(state);
+    state.in_window = windows_around(turned_frames(state), state.facts.clip, state.facts.loops);
+    take_back_turns(state);
+    double left = 0;
+    for (const PosePenetration& one : look_again(state)) left += double{one.found.fault_depth};
+    if (left < least) best = state.turns;
+    least = std::min(left, least);
+    const auto is_done = [](const WorkingEvent& e) { return e.state == WorkingState::kFreed || e.is_left_alone(); };
+    if (std::all_of(state.goals.events.begin(), state.goals.events.end(), is_done)) break;
   }
-  return out;
+  state.turns = std::move(best);
+  state.in_window = windows_around(turned_frames(state), state.facts.clip, state.facts.loops);
 }
 
 }  // namespace
@@ -95,11 +120,8 @@ Mend mend_clip(const ClipFacts& facts, const std::function<bool(const Event&)>& 
   const int rounds = separate_within_budgets(state);
   take_best_rounds(state);
   calm_turns(facts.clip, facts.height, facts.loops, state.turns);
-  state.in_window = windows_around(turned_frames(state), facts.clip, facts.loops);
   state.finder.leave_out({});  // corrections must not add faults of pairs that were harmless
-  settle(state);
-  state.in_window = windows_around(turned_frames(state), facts.clip, facts.loops);
-  take_back_turns(state);
+  take_back_or_settle(state);
   const std::vector<PosePenetration> after = look_as_check(state);
   state.finder.leave_out(state.goals.harmless());
   std::vector<MendedEvent> events = mended_events(state);

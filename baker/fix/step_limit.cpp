@@ -22,7 +22,8 @@ bool has_joint_below(const TurnedClip& clip, Index joint) {
   return false;
 }
 
-Vec3 own_end(const TurnedClip& clip, const std::vector<Affine>& axes, Index joint, double height) {
+// The middle of what hangs on a limb's last joint, in its axes; zero for other joints.
+Vec3 middle_beyond(const TurnedClip& clip, const std::vector<Affine>& axes, Index joint, double height) {
   const std::vector<Index> above = clip.above_joint(joint);
   if (above.size() < 2 || has_joint_below(clip, joint)) return Vec3::Zero();
   const Vec3 out = axes[joint].translation() - axes[above[1]].translation();
@@ -35,7 +36,11 @@ Vec3 own_end(const TurnedClip& clip, const std::vector<Affine>& axes, Index join
 std::vector<EndPoint> end_points(const TurnedClip& clip, double height) {
   const std::vector<Affine> axes = clip.pose_of(0, std::vector<Vec3>(clip.count(), Vec3::Zero())).axes;
   std::vector<EndPoint> out;
-  for (Index j = 0; j < clip.count(); ++j) out.push_back({j, own_end(clip, axes, j, height)});
+  for (Index j = 0; j < clip.count(); ++j) {
+    out.push_back({j, Vec3::Zero()});
+    const Vec3 beyond = middle_beyond(clip, axes, j, height);
+    if (!beyond.isZero(0)) out.back().own = beyond;
+  }
   return out;
 }
 

@@ -21,7 +21,7 @@ class EndSteps {
  public:
   // Heights that an end may go further from one frame to the next than in the source clip; and what a solver aims at.
   // The hand's own middle, which a report measures, may be a little further out.
-  static constexpr double kStepMax = 0.0088, kStepTarget = 0.008;
+  static constexpr double kStepMax = 0.01, kStepTarget = 0.009;
 
   EndSteps(const TurnedClip& clip, const Turns& turns, double height);
 

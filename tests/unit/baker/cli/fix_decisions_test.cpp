@@ -158,6 +158,7 @@ TEST_CASE("fix: a decision about no event is named, and a file that holds no dec
     CHECK(!std::filesystem::exists(fixer.out));
   };
   check("{", {"decisions.json", "line 1 is not JSON"});
+  check("glTF" + std::string(5000, '['), {"decisions.json", "line 1 is not JSON"});
   check("[]", {"decisions.json", "spherechain_decisions"});
   elsewhere["from"] = 1.5;
   check(json{{"spherechain_decisions", json::array({elsewhere})}}.dump(), {"entry 1", "'from'", "a frame's number"});
