@@ -54,8 +54,8 @@ SPHERECHAIN_API sc_triangle sc_get_triangle(const sc_model* model, uint32_t tria
 /* A self-check for the first run: `palette` is what the engine gives while the character stands in its bind pose. There
  * every bone's matrix is the same, the model's own. SC_OTHER_BIND: the message names the first bone whose matrix moves
  * the character otherwise, by more than a thousandth of its height. It finds wrong strides, matrices that lack the
- * inverse bind matrix, and other rest poses. Stand the character off the origin and turned: where the model's matrix is
- * the identity, a wrong layout does not show. Wrong orders never show in this pose: bind by name. */
+ * inverse bind matrix, and other rest poses; off the origin also the wrong one of the two layouts of 4 by 4. Rows in
+ * place of columns of 3 by 4, and wrong orders, do not show in this pose: bind by name. */
 SPHERECHAIN_API sc_status sc_check_rest(const sc_model* model, const sc_pose* palette, char* message,
                                         size_t message_size) SC_NOEXCEPT;
 

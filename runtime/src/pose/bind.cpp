@@ -79,7 +79,18 @@ void move(const BoneMatrices& bones, std::size_t bone, const Vec3& p, double (&o
   }
 }
 
+// Whether the last row of a matrix of 4 by 4 holds a translation. Nothing else reads that row.
+bool is_transposed(const Pose& pose, const BoneMatrices& bones, std::size_t bone) {
+  if (size_of(pose.bone_layout) != 16 * sizeof(float)) {
+    return false;
+  }
+  const float* const last = bones.data + bone * bones.stride + 3 * bones.row;
+  constexpr float kNone = 1e-3F;
+  return std::abs(last[0]) > kNone || std::abs(last[bones.column]) > kNone || std::abs(last[2 * bones.column]) > kNone;
+}
+
 }  // namespace
+
 Status check_rest_pose(const Asset& asset, const Pose& pose, char* message, std::size_t message_size) {
   Message sentence(message, message_size);
   const AssetView& view = view_of(asset);
@@ -103,6 +114,16 @@ Status check_rest_pose(const Asset& asset, const Pose& pose, char* message, std:
     scale = std::max(scale, std::abs(first[2][r] - first[0][r]));
   }
   for (std::size_t b = 0; b < view.bone_count(); ++b) {
+    if (is_transposed(pose, bones, b)) {
+      sentence.wrong("bone \"%s\": the last row of its matrix is not 0 0 0 1. Is the layout the other one of 4 by 4?",
+                     view.bone(b).name);
+      return refuse(SC_OTHER_BIND, SC_FIELD_BONES);
+    }
+    if (scale == 0) {
+      sentence.wrong("bone \"%s\": its matrix moves all points to one place. Has the palette been filled?",
+                     view.bone(0).name);
+      return refuse(SC_OTHER_BIND, SC_FIELD_BONES);
+    }
     for (std::size_t i = 0; i < 4; ++i) {
       move(bones, b, points[i], moved);
       for (std::size_t r = 0; r < 3; ++r) {

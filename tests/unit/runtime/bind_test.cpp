@@ -268,6 +268,12 @@ TEST_CASE("in the bind pose all bones have the model's matrix; the first that ha
   wrong.bone_layout = SC_ROWS_3X4;
   wrong.bone_stride = 0;
   CHECK(check(wrong) == SC_OTHER_BIND);
+  // The other layout of 4 by 4: the translation is in the last row. And a palette that nobody filled.
+  wrong.bone_layout = SC_COLUMNS_4X4;
+  CHECK(check(wrong) == SC_OTHER_BIND);
+  CHECK(rig.message.find("0 0 0 1") != std::string::npos);
+  CHECK(check(pose_of(std::vector<Matrix>(kRigBones, Matrix{}))) == SC_OTHER_BIND);
+  CHECK(rig.message.find("filled") != std::string::npos);
   // The status of a refused pose names its field.
   Pose short_pose = pose_of(bones);
   short_pose.bone_count = 2;
