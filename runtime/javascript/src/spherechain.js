@@ -116,7 +116,7 @@ const vector = (...first) => ({
 });
 // `reserved`: words at its end that are 0.
 const struct = (fields, reserved = 0) => {
-  const names = Object.keys(fields), types = Object.values(fields);
+  const names = Object.keys(fields), types = Object.values(fields), callers = names.filter(name => name !== 'structSize');
   return {
     words: types.reduce((sum, type) => sum + type.words, reserved),
     make: () => Object.fromEntries(names.map((name, i) => [name, types[i].make()])),
@@ -125,7 +125,7 @@ const struct = (fields, reserved = 0) => {
       return value;
     },
     write(place, value, what) {
-      checkKeys(value, names, what);
+      checkKeys(value, callers, what);
       for (let i = 0; i < names.length; place += 4 * types[i++].words) types[i].write(place, value[names[i]], names[i]);
       words.fill(0, place / 4, place / 4 + reserved);
     },
