@@ -45,6 +45,13 @@ void append(const std::vector<PosePenetration>& more, std::vector<PosePenetratio
   to.insert(to.end(), more.begin(), more.end());
 }
 
+// Measures all frames, and between frames that may have changed.
+std::vector<PosePenetration> measure(MendState& state) {
+  std::vector<PosePenetration> out = state.finder.in_frames(all_frames(state.facts.clip), state.turns);
+  append(state.finder.between(marked_frames(state.in_window), state.turns), out);
+  return out;
+}
+
 double greatest_turn(const MendState& state, const WorkingEvent& event) {
   double most = 0;
   const std::size_t count = state.facts.clip.count();
@@ -112,13 +119,7 @@ Look look_in_round(MendState& state, int round, bool is_first) {
   return out;
 }
 
-Look look_everywhere(MendState& state) {
-  Look out;
-  out.found = state.finder.in_frames(all_frames(state.facts.clip), state.turns);
-  append(state.finder.between(marked_frames(state.in_window), state.turns), out.found);
-  out.residual = add_separations(state, out.found);
-  return out;
-}
+double separate_everywhere(MendState& state) { return add_separations(state, measure(state)); }
 
 bool has_deep_contacts(const MendState& state, const std::vector<PosePenetration>& found) {
   return std::any_of(found.begin(), found.end(), [&](const PosePenetration& penetration) {
@@ -128,8 +129,7 @@ bool has_deep_contacts(const MendState& state, const std::vector<PosePenetration
 }
 
 std::vector<PosePenetration> look_again(MendState& state) {
-  std::vector<PosePenetration> out = state.finder.in_frames(all_frames(state.facts.clip), state.turns);
-  append(state.finder.between(marked_frames(state.in_window), state.turns), out);
+  std::vector<PosePenetration> out = measure(state);
   for (WorkingEvent& event : state.goals.events) classify(state, out, event);
   return out;
 }

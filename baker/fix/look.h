@@ -25,8 +25,9 @@ struct Look {
 // keeps the round in `state.rounds`.
 Look look_in_round(MendState& state, int round, bool is_first);
 
-// Measures all frames, and between frames that may have changed, and adds separations likewise.
-Look look_everywhere(MendState& state);
+// Measures all frames, and between frames that may have changed, and adds separations likewise. Returns the sum of the
+// residuals.
+double separate_everywhere(MendState& state);
 
 // True if parts intersect by more than the margin, although they must be apart.
 bool has_deep_contacts(const MendState& state, const std::vector<PosePenetration>& found);

@@ -31,7 +31,7 @@ constexpr double kFirstBudget = 25;           // degrees
 constexpr int kFreeRoundsMax = 4;             // rounds without faults in which joints return as far as they can
 constexpr double kStillStep = to_radians(1);  // a round with smaller steps may be the last
 constexpr int kSettleRounds = 3;              // after smoothing
-constexpr int kSettleWeight = 3;              // they weigh separations as this round
+constexpr int kSettleWeight = 3;              // a settling round weighs separations as this round of the search
 
 // Separates body parts round by round, until all are apart and the joints are at rest, or nothing gets better any more.
 // Returns the number of the next round.
@@ -69,27 +69,27 @@ int separate_within_budgets(MendState& state) {
   return rounds;
 }
 
-std::set<int> turned_frames(const MendState& state) {
-  std::set<int> out;
+void open_windows_of_turns(MendState& state) {
+  std::set<int> turned;
   for (std::size_t i = 0; i < state.turns.size(); ++i) {
-    if (!state.turns[i].isZero(0)) out.insert(static_cast<int>(i / state.facts.clip.count()));
+    if (!state.turns[i].isZero(0)) turned.insert(static_cast<int>(i / state.facts.clip.count()));
   }
-  return out;
+  state.in_window = windows_around(turned, state.facts.clip, state.facts.loops);
 }
 
-// Smoothing moves parts into each other again. A few more rounds part them, and smoothing has less to do.
+// Smoothing moves parts into each other again. A few more rounds part them, and smoothing has less to do then.
 void settle(MendState& state) {
   for (int round = 0; round < kSettleRounds; ++round) {
-    const Look look = look_everywhere(state);
-    state.report(fmt::format("settling: {:.1f} mm too deep", look.residual * state.facts.mm));
-    if (look.residual == 0) return;
+    const double residual = separate_everywhere(state);
+    state.report(fmt::format("settling: {:.1f} mm too deep", residual * state.facts.mm));
+    if (residual == 0) return;
     gauss_newton_step(state, kSettleWeight, false);
   }
   calm_turns(state.facts.clip, state.facts.height, state.facts.loops, state.turns);
 }
 
-// Takes back turns that make something worse, from the turns as they are and from settled ones. Settling helps in most
-// crowded places, and harms in some. Keeps the turns that leave least.
+// Takes back turns that make something worse: of the turns as they are and, while faults are left, of settled ones.
+// Settling can harm, too: the turns that leave least are kept.
 void take_back_or_settle(MendState& state) {
   const Turns start = state.turns;
   const std::vector<WorkingEvent> events = state.goals.events;
@@ -99,7 +99,7 @@ void take_back_or_settle(MendState& state) {
     state.turns = start;
     state.goals.events = events;
     if (settles) settle(state);
-    state.in_window = windows_around(turned_frames(state), state.facts.clip, state.facts.loops);
+    open_windows_of_turns(state);
     take_back_turns(state);
     double left = 0;
     for (const PosePenetration& one : look_again(state)) left += double{one.found.fault_depth};
@@ -109,7 +109,7 @@ void take_back_or_settle(MendState& state) {
     if (std::all_of(state.goals.events.begin(), state.goals.events.end(), is_done)) break;
   }
   state.turns = std::move(best);
-  state.in_window = windows_around(turned_frames(state), state.facts.clip, state.facts.loops);
+  open_windows_of_turns(state);
 }
 
 }  // namespace

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "baker/fix/time_windows.h"
-
 namespace spherechain::baker {
 namespace {
 
@@ -31,18 +29,14 @@ Vec3 middle_beyond(const TurnedClip& clip, const std::vector<Affine>& axes, Inde
   return axes[joint].linear().inverse() * (kTip * height / out.norm() * out);
 }
 
-}  // namespace
-
 std::vector<EndPoint> end_points(const TurnedClip& clip, double height) {
   const std::vector<Affine> axes = clip.pose_of(0, std::vector<Vec3>(clip.count(), Vec3::Zero())).axes;
   std::vector<EndPoint> out;
-  for (Index j = 0; j < clip.count(); ++j) {
-    out.push_back({j, Vec3::Zero()});
-    const Vec3 beyond = middle_beyond(clip, axes, j, height);
-    if (!beyond.isZero(0)) out.back().own = beyond;
-  }
+  for (Index j = 0; j < clip.count(); ++j) out.push_back({j, middle_beyond(clip, axes, j, height)});
   return out;
 }
+
+}  // namespace
 
 EndSteps::EndSteps(const TurnedClip& clip, const Turns& turns, double height)
     : height_(height), below_(clip.count()), ends_(end_points(clip, height)) {

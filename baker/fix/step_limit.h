@@ -8,19 +8,18 @@
 
 namespace spherechain::baker {
 
-// A point whose steps from frame to frame are limited: a joint's place, or a point of the hand beyond a limb's last
-// one.
+// A point whose steps from frame to frame are limited: a joint's place, or for a limb's last joint a point beyond it,
+// about the middle of a hand.
 struct EndPoint {
   Index joint;
   Vec3 own;  // in the joint's axes
 };
-std::vector<EndPoint> end_points(const TurnedClip& clip, double height);
 
-// Places of the ends in the source clip and in the turned one.
+// Places of all end points, one a turning joint, in the source clip and in the turned one.
 class EndSteps {
  public:
-  // Heights that an end may go further from one frame to the next than in the source clip; and what a solver aims at.
-  // The hand's own middle, which a report measures, may be a little further out.
+  // Heights that an end may go further from one frame to the next than in the source clip; and the solver's target.
+  // Skin that reaches further out than an end, as a report measures it, may go further.
   static constexpr double kStepMax = 0.01, kStepTarget = 0.009;
 
   EndSteps(const TurnedClip& clip, const Turns& turns, double height);

@@ -18,11 +18,11 @@ namespace {
 
 constexpr int kHalfTries = 2;    // tries to halve the turns that made something worse; later ones take them away
 constexpr int kNarrowTries = 5;  // tries that fade as fast as the step limit allows
-constexpr int kTries = 10;       // in all, in ever wider windows
+constexpr int kTries = 10;       // in all; those after the narrow ones fade ever more slowly
 constexpr double kFootMoves = 1e-3, kFootTurns = 5e-3;  // heights; a share of the axes' size
 constexpr double kWorth = 3;                            // times the depth that is added: so much less is worth it
-constexpr double kFadeSeconds = 0.3;
-constexpr double kWidest = 3;  // times that, or the time in which ends may return
+constexpr double kFadeSeconds = 0.3;                    // the shortest fade
+constexpr double kWidest = 3;                           // the last try's fade, times that of a narrow one
 
 // Sums of the fault depths of parts that are moved, by frame.
 struct Depths {

@@ -13,6 +13,7 @@
 #include "baker/fix/part_joints.h"
 #include "baker/fix/smoothing.h"
 #include "baker/fix/solve.h"
+#include "baker/fix/step_limit.h"
 #include "baker/fix/time_windows.h"
 #include "baker/fix/ways_out.h"
 #include "baker/fix/working_event.h"
@@ -131,6 +132,36 @@ TEST_CASE("mend: a foot that is pinned stays, whatever its knee does") {
   CHECK((s.turned.pose(30, s.turns).axes[2].linear() - Eigen::Matrix3d::Identity()).norm() < 0.01);
   loose.move(30, 1, {0.02, 0, 0}, [](int, std::vector<Constraint>&) {});
   CHECK((loose.at(30, 2) - foot).norm() > 0.01);
+}
+
+TEST_CASE("mend: a step limit allows a step as far as it goes, to first order") {
+  Sticks s({"upper_arm.L", "forearm.L", "hand.L"});
+  const auto turn = [&](int frame, Index joint) -> Vec3& {
+    return s.turns[static_cast<std::size_t>(frame) * s.turned.count() + joint];
+  };
+  for (int f = 30; f < kClipFrames; ++f) turn(f, 0) = {0.05, 0.1, 0.2};
+  std::vector<Constraint> limits;
+  add_step_limits(s.turned, kStickHeight, s.turns, limits);
+  REQUIRE(limits.size() == 2);  // the forearm's joint and the hand step into frame 30; the upper arm's joint does not
+  const auto over = [&](const Constraint& limit) {
+    double sum = -limit.target;
+    for (const Constraint::Term& term : limit.terms) sum += term.by.dot(turn(term.frame, term.joint));
+    return sum;
+  };
+  const auto step = [&](std::size_t end) {
+    return kStickHeight * (EndSteps(s.turned, s.turns, kStickHeight).extra(end, 30) - EndSteps::kStepTarget);
+  };
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    CHECK(limits[i].weight == 0);
+    CHECK(over(limits[i]) == doctest::Approx(step(i + 1)));
+  }
+  const double before[] = {step(1), step(2)};
+  turn(29, 0) = {0.002, -0.001, 0.001};
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    const double longer = step(i + 1) - before[i];
+    CHECK(std::abs(longer) > 1e-4);
+    CHECK(std::abs(over(limits[i]) - before[i] - longer) < 0.03 * std::abs(longer));
+  }
 }
 
 TEST_CASE("mend: hands that hold one thing keep their grip") {
