@@ -22,6 +22,7 @@ LICENCES = {
     "fmtlib": "MIT",
     "gmp": "LGPL-3.0-or-later OR GPL-2.0-or-later",
     "highway": "Apache-2.0",
+    "libmd": "BSD-2-Clause AND BSD-3-Clause AND Beerware AND ISC",
     "libstb": "MIT OR Unlicense",
     "minizip": "Zlib",
     "mpfr4": "LGPL-3.0-or-later",
