@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # The documents as a site that opens from disk, with a search and a live demo: `scripts/site.sh OUT`; open OUT/index.html. Needs
-# Node 18 and npm. It installs the npm packages of scripts/site/package.json into build/site, and builds the tool where
-# SPHERECHAIN_TOOL names none.
+# Node 18 and npm. It installs the npm packages of scripts/site/package.json into build/site. Where SPHERECHAIN_TOOL names no tool,
+# it builds one in build/release. The demo then needs emscripten, and a build/release that was not configured with
+# SPHERECHAIN_JAVASCRIPT=OFF.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -29,12 +30,12 @@ fi
 
 work=$(mktemp -d)
 trap 'rm -r "$work"' EXIT
-# A MakeHuman body, whose exports are CC0, in movements of our own.
+# The demo shows a MakeHuman body, whose exports are CC0, in movements of our own.
 human=/usr/share/assimp/models/Collada/human.zae
 "$tool" bake "$human" -o "$work/human.sphc" >/dev/null
 "$tool" view "$work/human.sphc" --source "$human" --poses samples/poses/animation_arms.json -o "$work/human.html" >/dev/null
 if ! grep -q data-runtime "$work/human.html"; then
-  echo "site: the page of view has no runtime, so that the demo would be dead: build the target viewer with emscripten" >&2
+  echo "site: $tool writes pages without a runtime, so that the demo would be dead: install emscripten, configure with -DSPHERECHAIN_JAVASCRIPT=ON, and build the target viewer" >&2
   exit 1
 fi
 node build/site/build.mjs . "$work/human.html" "$work/site"

@@ -69,12 +69,11 @@ def frames_of(armature, scene, action):
 class Character:
     """The bones and meshes that are exported, and the poses that were sampled."""
 
-    def __init__(self, context, armature=None):
-        layer = context.view_layer
-        armature = armature or armature_of(context)
-        if armature is None or armature.type != "ARMATURE":
+    def __init__(self, context):
+        armature = armature_of(context)
+        if armature is None:
             raise Refused("Select a character: an armature, or a mesh that an armature moves")
-        meshes = meshes_of(armature, layer)
+        meshes = meshes_of(armature, context.view_layer)
         if not meshes:
             raise Refused(f"{armature.name} moves no visible mesh")
         if context.mode.startswith("EDIT"):

@@ -90,7 +90,7 @@ class Writer:
         return self.node(name=name, mesh=len(self.gltf["meshes"]) - 1, skin=skin)
 
     def clip(self, name, nodes, pose, fps):
-        """A key at each frame for every channel that changes. What stays is left to the nodes (see `rest`)."""
+        """A key at each frame for every channel that changes. A translation or scale that stays is that of its node."""
         times = self.accessor(np.arange(len(pose)) / fps, 5126, "SCALAR", bounds=True)
         samplers, channels = [], []
         for path, kind, values in zip(("translation", "rotation", "scale"), ("VEC3", "VEC4", "VEC3"), split(pose)):

@@ -108,7 +108,7 @@ class Fix(Start, bpy.types.Operator):
 
 
 class Mask(Start, bpy.types.Operator):
-    """Make a vertex group of the skin below clothes that the action never shows"""
+    """Make a vertex group of the skin below clothes that no action of the character shows"""
 
     bl_idname, bl_label, kind = "spherechain.mask", "Mask", "mask"
 
@@ -140,8 +140,8 @@ class Panel(bpy.types.Panel):
 
     def draw(self, context):
         layout = self.layout
-        armature = armature_of(context) if context.object else None
-        if armature is None or armature.type != "ARMATURE":
+        armature = armature_of(context)
+        if armature is None:
             layout.label(text="Select a character", icon="INFO")
         else:
             data = armature.animation_data
@@ -156,7 +156,7 @@ class Panel(bpy.types.Panel):
                 row.operator(f"spherechain.{operator}")
         if runner.error:
             lines(layout, context, runner.error, "ERROR")
-        if armature is None or armature.type != "ARMATURE" or not armature.spherechain.checked:
+        if armature is None or not armature.spherechain.checked:
             return
         shown = armature.spherechain
         lines(layout, context, shown.checked, "NONE")

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Check, fix and mask: from the active character to the tool and back. Each is a generator that yields a line of progress."""
 
-import itertools
 import os
 import tempfile
 
@@ -10,13 +9,6 @@ import bpy
 from . import drawing, new_action, results
 from .character import Character, Refused, actions_of
 from .job import Failed, Job
-
-numbers = itertools.count()
-
-
-def work_folder():
-    """A new folder in Blender's own, which Blender removes when it ends."""
-    return tempfile.mkdtemp(prefix="spherechain-", dir=bpy.app.tempdir)
 
 
 def follow(job):
@@ -34,19 +26,20 @@ def follow(job):
 
 
 def exported(character, actions=(None,)):
-    """Plays the action that is on, or others, and writes the character; the file's path."""
+    """Plays the action that is on, or others, and writes the character. Returns the file's path, and the character's name for
+    each way in which the tool names that file. Blender removes its folder when it ends."""
     for action in actions:
         yield from character.sample(action)
-    path = os.path.join(work_folder(), "character.glb")
+    folder = tempfile.mkdtemp(prefix="spherechain-", dir=bpy.app.tempdir)
+    path = os.path.join(folder, "character.glb")
     character.write(path)
-    return path
+    return path, {path: character.name, os.path.basename(path): character.name}
 
 
 def check(context, tool):
     character = Character(context)
-    source = yield from exported(character)
+    source, names = yield from exported(character)
     folder, rate = os.path.dirname(source), f"{character.fps:.9g}"
-    names = {source: character.name, os.path.basename(source): character.name, "character.glb": character.name}
 
     def look(job):
         found = os.path.join(folder, "check.json")
@@ -88,11 +81,10 @@ def show_events(character, events, others, notes):
 def fix(context, tool):
     character = Character(context)
     new_action.refuse_tracks(character.armature)
-    source = yield from exported(character)
+    source, names = yield from exported(character)
     mended = os.path.join(os.path.dirname(source), "mended.glb")
     report = os.path.join(os.path.dirname(source), "report")
-    job = Job(lambda job: job.tool([tool, "fix", source, "-o", mended, "--report", report], good=(0, 5)),
-              {source: character.name})
+    job = Job(lambda job: job.tool([tool, "fix", source, "-o", mended, "--report", report], good=(0, 5)), names)
     yield from follow(job)
     yield "making the new action"
     said = yield from new_action.from_mended(character, mended)
@@ -103,9 +95,9 @@ def fix(context, tool):
 def mask(context, tool):
     character = Character(context)
     actions = actions_of(character.armature)
-    source = yield from exported(character, actions or (None,))
+    source, names = yield from exported(character, actions or (None,))
     hidden = os.path.join(os.path.dirname(source), "mask.json")
-    job = Job(lambda job: job.tool([tool, "mask", source, "--as", "json", "-o", hidden]), {source: character.name})
+    job = Job(lambda job: job.tool([tool, "mask", source, "--as", "json", "-o", hidden]), names)
     yield from follow(job)
     total = 0
     for mesh, triangles in results.hidden_triangles(hidden).items():

@@ -12,13 +12,15 @@ const [root, demo, out] = process.argv.slice(2);
 if (!out) throw new Error('usage: build.mjs ROOT DEMO.html OUT');
 const here = dirname(fileURLToPath(import.meta.url));
 const PICTURES = ['.png', '.jpg', '.svg', '.webp'];
-const QUESTIONS = 'five-questions'; // the heading of README.md whose table is the menu
 const DEMO = 'demo/index.html';
 
 const escape = (text) => text.replace(/[&<>"]/g, (c) => ({ '&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;' })[c]);
 const highlight = (code, language) =>
   hljs.getLanguage(language) ? hljs.highlight(code, { language, ignoreIllegals: true }).value : escape(code);
 const md = new MarkdownIt({ html: true, highlight });
+// An option of a command stays whole where the command wraps: browsers break lines after hyphens.
+md.renderer.rules.code_inline = (tokens, at) =>
+  `<code>${escape(tokens[at].content).replace(/(?<=^| )--?[\w-]+/g, '<span class="option">$&</span>')}</code>`;
 
 // Where a file of the tree lies in the site.
 function placeOf(file) {

@@ -56,8 +56,12 @@ for (const [url, read] of pages) {
 const written = readdirSync(folder, { recursive: true }).filter((name) => name.endsWith('.html')).map((name) => top + name);
 assert.deepEqual(written.filter((url) => !pages.has(url)), [], 'pages that no link leads to');
 
-// The search: by words, by a key with an underscore, with a slip of the pen, from a page two folders down.
+// A table of sentences and long commands fits a laptop.
 const desk = await open(1280, 'dark');
+await desk.goto(`${top}docs/how-we-know.html`);
+assert.ok(await desk.evaluate(() => [...document.querySelectorAll('.wide')].every(({ scrollWidth, clientWidth }) => scrollWidth <= clientWidth)), 'a table runs off');
+
+// The search: by words, by a key with an underscore, with a slip of the pen, from a page two folders down.
 await desk.goto(`${top}docs/cli/bake.html`);
 async function search(words, title) {
   await desk.keyboard.press('Escape');
