@@ -9,7 +9,7 @@ if [[ "${1:-}" == --fast ]]; then
   cmake --build --preset release --target all
   scripts/lint.sh HEAD
   exec ctest --preset release --no-tests=error \
-    -R '^(rules|sample|golden|csharp\.(generated|palettes)|python\.(gradients|refusals))|^unit\.(runtime|contacts)$'
+    -R '^(rules|sample|golden|csharp\.(native|palettes)|python\.(gradients|refusals))|^unit\.(runtime|contacts)$'
 fi
 scripts/install_packages.sh
 for preset in release asan; do
