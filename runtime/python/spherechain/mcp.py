@@ -218,7 +218,7 @@ class Server:
 def main(arguments: Optional[List[str]] = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m spherechain.mcp", description=__doc__.splitlines()[0])
     parser.add_argument("--root", default=".", help="folder that all paths must lie in (default: the current one)")
-    parser.add_argument("--tool", help="path of the command line tool (default: $SPHERECHAIN_TOOL, or on the PATH)")
+    parser.add_argument("--tool", help="path of the command line tool (default: $SPHERECHAIN_TOOL, inside the wheel, or on the PATH)")
     options = parser.parse_args(arguments)
     root = Path(options.root).resolve()
     if not root.is_dir():
