@@ -37,6 +37,19 @@ class Tables(unittest.TestCase):
         self.assertEqual(steps, [(64, 70), (70, 70)])
         contacts = model.table(poses, contacts=True)
         self.assertEqual(contacts["triangle_pairs"].sum(), sum(c.triangle_pairs for pose in model.contacts(poses) for c in pose))
+        for name, value in (("classes", spherechain.CLASSES), ("full", True), ("limit", 1), ("nothing", 0)):
+            with self.assertRaisesRegex(TypeError, f"^{name} is no option of a table of contacts: scope,"):
+                model.table(poses, contacts=True, **{name: value})
+
+    def test_are_of_two_bodies_pose_by_pose(self):
+        model = spherechain.Model(DOLL)
+        poses, others = random_poses(model, 70, 80), random_poses(model, 71, 40)
+        table = model.table(poses, contacts=True, other=spherechain.Posed(model, others[:70]))
+        found = model.contacts(poses, other=spherechain.Posed(model, others[:70]))
+        self.assertEqual(list(zip(*(table[name].tolist() for name in ("frame", "part", "other")))),
+                         [(i, *entry[:2]) for i, pose in enumerate(found) for entry in pose])
+        with self.assertRaisesRegex(ValueError, "other has poses"):
+            model.table(poses, contacts=True, other=spherechain.Posed(model, others))
 
     def test_without_a_row_have_all_columns_with_their_types(self):
         model = spherechain.Model(DOLL)

@@ -248,7 +248,7 @@ class Model:
         poses: what load_motion() gave, in which a fault stays one until it is clearly none, as in `play`; or an array
         (frames, joints, 3, 4), of which each pose is measured alone. contacts: rows are contacts, not penetrations.
         progress: called with frames done and all frames. threads: of an array and of contacts. query: keywords of Query,
-        and `other` where poses are an array. Lengths that end in _mm are in millimetres, others in the pose's units; a
+        of contacts `scope` and those that choose pairs; and `other` where poses are an array. Lengths that end in _mm are in millimetres, others in the pose's units; a
         volume that is not known is NaN.
         """
         return _table.table(self, poses, contacts, progress, threads, query)
