@@ -13,7 +13,8 @@ from ._answers import (CLASSES, CONTACT_ROW, FAULTS, PART_CONTACT, PENETRATION, 
 from ._model import Bone, MatrixWarning, Model, Part, Posed, Query
 from ._motion import Motion, load_motion
 from ._response import Ground, Responded, Response, ResponseState
-from ._tool import Baked, ToolError, bake, check
+from ._process import ToolError
+from ._tool import Baked, bake, check
 
 from ._native import VERSION as __version__
 
