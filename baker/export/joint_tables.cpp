@@ -83,7 +83,7 @@ std::vector<PosedClip> posed_clips(const AnimatedAsset& animated, const Collider
 }
 
 std::string allow_slides(const std::vector<PosedClip>& clips, Colliders& colliders) {
-  constexpr double kStays = 3e-5;  // of the height: what joints in a row add up to stays below a millimetre on a human
+  constexpr double kStays = 3e-5;  // of the height: a row of joints adds up to less than a millimetre on a human
   std::vector<std::string> names;
   for (std::size_t b = 0; b < colliders.bodies.size(); ++b) {
     if (colliders.bodies[b].parent < 0) continue;

@@ -18,6 +18,7 @@ from ._tool import Baked, bake, check
 
 from ._native import VERSION as __version__
 
-__all__ = ["Baked", "Bone", "CLASSES", "CONTACT_ROW", "Contacts", "FAULTS", "Ground", "MatrixWarning", "Model", "Motion", "PART_CONTACT", "PENETRATION",
-           "Part", "PartContact", "Penetration", "Penetrations", "Posed", "Query", "Responded", "Response", "ResponseState",
-           "Rule", "SPHERE_PAIR", "STEP", "Step", "Steps", "TRANSFORM", "TRIANGLE_PAIR", "ToolError", "bake", "check", "load_motion"]
+__all__ = ["Baked", "Bone", "CLASSES", "CONTACT_ROW", "Contacts", "FAULTS", "Ground", "MatrixWarning", "Model", "Motion",
+           "PART_CONTACT", "PENETRATION", "Part", "PartContact", "Penetration", "Penetrations", "Posed", "Query",
+           "Responded", "Response", "ResponseState", "Rule", "SPHERE_PAIR", "STEP", "Step", "Steps", "TRANSFORM",
+           "TRIANGLE_PAIR", "ToolError", "bake", "check", "load_motion"]

@@ -23,7 +23,7 @@ Result = Tuple[Dict[str, Any], List[str]]  # the structured content, and picture
 
 
 class Refused(Exception):
-    """What the agent asked for cannot be done; the text says why."""
+    """The call of an agent cannot be done; the text says why."""
 
 
 class Tool(NamedTuple):
@@ -78,7 +78,7 @@ def _input(call: "Call", path: str) -> str:
     found = _inside(call, path)
     if not found.exists():
         raise Refused(f"{path}: there is no such file")
-    # Such lists of files may name files anywhere.
+    # A manifest or a list may name files anywhere.
     if found.suffix.lower() in (".json", ".txt") and found.is_file():
         raise Refused(f"{path}: name the characters and recordings themselves")
     return os.fspath(found)
@@ -152,7 +152,7 @@ def _pictures(folder: Path, clip: Optional[str] = None) -> List[str]:
 
 
 def _pictures_of(call: "Call", character: str, *options: str, clip: Optional[str] = None) -> List[str]:
-    """Checks a character for its pictures. It may have no clip: then there is none."""
+    """Checks a character, and returns the pictures of that check: none if the character has no clip."""
     with tempfile.TemporaryDirectory(prefix="spherechain-") as folder:
         call.run("check", character, "-o", folder, *options, fine=(LIBRARY_FAILS,))
         return _pictures(Path(folder), clip)
