@@ -42,7 +42,7 @@ struct MjcfWriter {
   const Colliders& colliders;
   std::vector<std::string> names;
   std::vector<SolidMass> masses;
-  std::string spring = {};  // of joints that slide: it holds parts together while the figure falls
+  std::string spring = {};  // attributes of joints that slide: a spring holds parts together while the figure falls
   std::string out = {};
 
   void body(std::size_t i, int depth) {
@@ -100,7 +100,7 @@ Export export_mjcf(const Colliders& given) {
   for (const SolidMass& one : writer.masses) mass += one.kilograms;
   const double height = std::max(colliders.height, 1e-3);
   const double inertia = mass * height * height;
-  constexpr double kSpringRate = 63;  // radians a second, ten swings of the whole figure
+  constexpr double kSpringRate = 63;  // radians a second: the whole figure on such a spring swings ten times a second
   writer.spring = fmt::format("stiffness=\"{}\" damping=\"{}\"", xml_number(mass * kSpringRate * kSpringRate),
                               xml_number(2 * mass * kSpringRate));
   const Eigen::AlignedBox3d bounds = bounds_of(colliders);

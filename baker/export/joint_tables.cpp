@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <numbers>
@@ -12,6 +11,7 @@
 
 #include "baker/export/names.h"
 #include "baker/export/robot.h"
+#include "baker/mesh/euler.h"
 #include "baker/play/skin_player.h"
 
 namespace spherechain::baker {
@@ -34,24 +34,11 @@ Placed placed(const Colliders& colliders, const std::vector<Eigen::Isometry3d>& 
           Eigen::Quaterniond(at_rest.linear().transpose() * at.linear()).normalized(), at};
 }
 
-double wrapped(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
-
-// The angles with turn = X(x) Y(y) Z(z). There are two solutions: takes the one that is nearer to the frame before.
-std::array<double, 3> three_angles(const Eigen::Quaterniond& turn, const std::array<double, 3>& before) {
-  const Eigen::Matrix3d r = turn.toRotationMatrix();
-  const double y = std::atan2(r(0, 2), std::hypot(r(0, 0), r(0, 1)));
-  const bool is_locked = std::hypot(r(0, 0), r(0, 1)) < 1e-9;  // the first axis and the last are the same
-  const double x = is_locked ? std::atan2(r(1, 0), r(1, 1)) : std::atan2(-r(1, 2), r(2, 2));
-  const double z = is_locked ? 0 : std::atan2(-r(0, 1), r(0, 0));
-  const std::array<double, 3> near{x, y, z};
-  const std::array<double, 3> far{wrapped(x + std::numbers::pi), wrapped(std::numbers::pi - y),
-                                  wrapped(z + std::numbers::pi)};
-  const auto distance = [&](const std::array<double, 3>& angles) {
-    double out = 0;
-    for (std::size_t k = 0; k < 3; ++k) out += std::abs(angles[k] - before[k]);
-    return out;
-  };
-  return distance(far) < distance(near) ? far : near;
+// The angles with turn = X(x) Y(y) Z(z) in radians, each at most half a turn: a robot's joint reaches no farther.
+Vec3 three_angles(const Eigen::Quaterniond& turn, const Vec3& before) {
+  constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
+  const Vec3 angles = angles_near(turn, {0, 1, 2}, before * kDegreesPerRadian) / kDegreesPerRadian;
+  return angles.unaryExpr([](double angle) { return std::remainder(angle, 2 * std::numbers::pi); });
 }
 
 bool is_in_file_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-'; }
@@ -96,7 +83,7 @@ std::vector<PosedClip> posed_clips(const AnimatedAsset& animated, const Collider
 }
 
 std::string allow_slides(const std::vector<PosedClip>& clips, Colliders& colliders) {
-  constexpr double kStays = 3e-5;  // of the height: what joints in a row add up to stays below a millimetre on a human
+  constexpr double kStays = 3e-5;  // of the height: a row of joints adds up to less than a millimetre on a human
   std::vector<std::string> names;
   for (std::size_t b = 0; b < colliders.bodies.size(); ++b) {
     if (colliders.bodies[b].parent < 0) continue;
@@ -115,7 +102,7 @@ std::string allow_slides(const std::vector<PosedClip>& clips, Colliders& collide
 }
 
 std::vector<ExportFile> urdf_joint_tables(const Colliders& colliders, const std::vector<PosedClip>& clips) {
-  std::vector<std::array<double, 3>> angles(colliders.bodies.size());
+  std::vector<Vec3> angles(colliders.bodies.size());
   return tables(
       "urdf", clips,
       [&] {
@@ -128,8 +115,8 @@ std::vector<ExportFile> urdf_joint_tables(const Colliders& colliders, const std:
         for (std::size_t b = 0; b < bodies.size(); ++b) {
           const Placed at = placed(colliders, bodies, b);
           if (colliders.bodies[b].parent < 0 || colliders.bodies[b].slide > 0) out += numbers(at.shift);
-          angles[b] = three_angles(at.turn, is_first ? std::array<double, 3>{} : angles[b]);
-          out += numbers({angles[b][0], angles[b][1], angles[b][2]});
+          angles[b] = three_angles(at.turn, is_first ? Vec3(Vec3::Zero()) : angles[b]);
+          out += numbers(angles[b]);
         }
         return out;
       });

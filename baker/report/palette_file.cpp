@@ -13,7 +13,7 @@ constexpr const char* kLayout =
     "palettes[frame, joint] is a matrix of 3 rows and 4 columns that is applied to a column (x, y, z, 1): the joint's "
     "world matrix times its inverse bind matrix, in the units and axes of the source's file";
 
-constexpr std::size_t kFloats = 12;  // of a matrix
+constexpr std::size_t kMatrixFloats = 12;
 
 }  // namespace
 
@@ -23,7 +23,7 @@ PaletteFile::PaletteFile(const std::filesystem::path& path, const AnimatedAsset&
     throw Error(ExitCode::kFile, path.string() + ": no bones move " + animated.file() +
                                      " in this motion, so there are no palettes (meshes as frames have none)");
   }
-  const std::size_t frame = 4 * kFloats * animated.asset()->bone_count();
+  const std::size_t frame = 4 * kMatrixFloats * animated.asset()->bone_count();
   const auto frames = static_cast<std::size_t>(animated.frame_count());
   if (frames * frame > NpzFile::kTableMax) {
     throw Error(ExitCode::kFile, fmt::format("{}: {} frames would have more than 1 GB ({} at most: --clip, --frames)",
@@ -49,7 +49,7 @@ void PaletteFile::finish() {
   std::vector<float> inverse_bind;
   for (std::size_t b = 0; b < bones; ++b) {
     joints.emplace_back(asset->bone(b).name);
-    inverse_bind.insert(inverse_bind.end(), asset->bone(b).inverse_bind, asset->bone(b).inverse_bind + kFloats);
+    inverse_bind.insert(inverse_bind.end(), asset->bone(b).inverse_bind, asset->bone(b).inverse_bind + kMatrixFloats);
   }
   for (std::size_t m = 0; m < morphs; ++m) morph_names.emplace_back(asset->morph_name(m));
   std::vector<double> rates;

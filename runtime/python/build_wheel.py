@@ -74,7 +74,7 @@ def pack(wheel_directory, package, platform, more=(), licences=(), licence="MIT"
     name = f"{PACKAGE}-{version()}-{tag}.whl"
     with zipfile.ZipFile(Path(wheel_directory, name), "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
         for path, data in files.items():
-            entry = zipfile.ZipInfo(path)  # of 1980: the same wheel from the same files
+            entry = zipfile.ZipInfo(path)  # its date is 1980: the same files give the same wheel
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.external_attr = modes.get(path, 0o100644) << 16
             wheel.writestr(entry, data)

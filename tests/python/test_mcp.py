@@ -116,7 +116,9 @@ class Server(unittest.TestCase):
         self.assertTrue(found["fails"])
         worst = found["tickets"][0]
         self.assertEqual((worst["character"], worst["clip"], worst["parts"]), ("arm.urdf", "fold.csv", ["upper", "base"]))
-        played = self.call("play", character="arm.urdf", motion="fold.csv")["structuredContent"]["faults"][0]
+        play = self.call("play", character="arm.urdf", motion="fold.csv")
+        self.assertEqual([part["type"] for part in play["content"]], ["text", "image"])
+        played = play["structuredContent"]["faults"][0]
         self.assertEqual((played["parts"], played["deepest_frame"]), (worst["parts"], worst["frame"]))
         self.assertAlmostEqual(played["depth_mm"], worst["depth_mm"], 1)
         self.assertTrue((self.root / found["report"] / "library.js").is_file())
@@ -133,6 +135,11 @@ class Server(unittest.TestCase):
             self.refused("outside", "play", character=path)
             self.refused("outside", "export", character="arm.urdf", to="unity", output=path)
         self.refused("no such file", "play", character="nowhere.glb")
+        for name in ("list.json", "list.txt"):
+            (self.root / name).write_text('{"characters": ["../secret.glb"]}')
+            self.refused("name the characters and recordings", "check", library=[name])
+            self.refused("name the characters and recordings", "play", character="arm.urdf", motion=name)
+        self.refused("fps is '30': pass a number", "play", character="arm.urdf", fps="30")
         self.refused("to is 'doom'", "export", character="arm.urdf", to="doom", output="x.json")
         self.refused("library is 'arm.urdf': pass a list", "check", library="arm.urdf")
         self.refused("no argument 'rm'", "check", library=["arm.urdf"], rm=True)
@@ -144,7 +151,7 @@ class Server(unittest.TestCase):
         (self.root / "arm.json").rename(self.root / "other.json")
         self.refused("SpherechainColliders.cs: is there already", "export", character="arm.urdf", to="unity", output="arm.json")
         self.assertEqual((self.root / "SpherechainColliders.cs").read_text(), "mine")
-        result = self.call("export", character="arm.urdf", to="unity", output="arm.json", volumes="spheres", overwrite=True)
+        self.call("export", character="arm.urdf", to="unity", output="arm.json", volumes="spheres", overwrite=True)
         self.assertEqual((self.root / "arm.json").read_bytes(), before)
 
     def test_a_cancelled_call_ends_its_process_and_is_not_answered(self):

@@ -37,6 +37,19 @@ class Tables(unittest.TestCase):
         self.assertEqual(steps, [(64, 70), (70, 70)])
         contacts = model.table(poses, contacts=True)
         self.assertEqual(contacts["triangle_pairs"].sum(), sum(c.triangle_pairs for pose in model.contacts(poses) for c in pose))
+        for name, value in (("classes", spherechain.CLASSES), ("full", True), ("limit", 1), ("nothing", 0)):
+            with self.assertRaisesRegex(TypeError, f"^{name} is no option of a table of contacts: scope,"):
+                model.table(poses, contacts=True, **{name: value})
+
+    def test_are_of_two_bodies_pose_by_pose(self):
+        model = spherechain.Model(DOLL)
+        poses, others = random_poses(model, 70, 80), random_poses(model, 71, 40)
+        table = model.table(poses, contacts=True, other=spherechain.Posed(model, others[:70]))
+        found = model.contacts(poses, other=spherechain.Posed(model, others[:70]))
+        self.assertEqual(list(zip(*(table[name].tolist() for name in ("frame", "part", "other")))),
+                         [(i, *entry[:2]) for i, pose in enumerate(found) for entry in pose])
+        with self.assertRaisesRegex(ValueError, "other has poses"):
+            model.table(poses, contacts=True, other=spherechain.Posed(model, others))
 
     def test_without_a_row_have_all_columns_with_their_types(self):
         model = spherechain.Model(DOLL)
@@ -59,7 +72,7 @@ class Motions(unittest.TestCase):
             frames = json.loads(result.read_text())["frames"]
         expected = {(frame["clip_frame"], *entry["parts"], entry["class"], round(entry["depth_mm"], 3))
                     for frame in frames for entry in frame["penetrations"] if entry["class"] in spherechain.FAULTS}
-        motion = spherechain.load_motion(DOLL, WALK, source=DOLL_MESH, fps=1, tool=TOOL)
+        motion = spherechain.load_motion(DOLL, WALK, fps=1, tool=TOOL)  # the source lies beside the asset
         table = spherechain.Model(DOLL).table(motion)
         self.assertEqual(set(zip(table["frame"].tolist(), *(table[name].tolist() for name in ("part", "other", "kind")),
                                  table["depth_mm"].round(3).tolist())), expected)
@@ -77,6 +90,12 @@ class Motions(unittest.TestCase):
             turned = spherechain.load_motion(spherechain.Model(DOLL, model.joints[::-1] + ("prop",)), file)
             np.testing.assert_array_equal(turned.palettes[:, -2::-1], plain.palettes)
             tables = dict(np.load(file))
+            np.savez(file, **{**tables, "clips": ["Walk", "Run"], "fps": [30.0, 60.0], "clip": [0, 0, 1]})
+            run = spherechain.load_motion(model, file, "Run")
+            np.testing.assert_array_equal(run.palettes, plain.palettes[2:])
+            self.assertEqual((run.clips, run.fps, run.clip.tolist()), (("Run",), 60, [0]))
+            with self.assertRaisesRegex(ValueError, "has no clip 'Jump': it has Walk, Run"):
+                spherechain.load_motion(model, file, "Jump")
             for name, text in (("joints", "are not the bones"), ("inverse_bind", "of another character")):
                 np.savez(file, **{**tables, name: tables[name][::-1]})
                 with self.assertRaisesRegex(ValueError, text):

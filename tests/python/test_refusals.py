@@ -107,8 +107,10 @@ class Refusals(unittest.TestCase):
                             (poses[:, ::-1], "another order")):
             with self.subTest(text):
                 self.refuses(ValueError, text, self.model.check_pose, wrong.astype(np.float32))
-        with self.assertWarnsRegex(spherechain.MatrixWarning, "doll.*they are world matrices"):
-            self.model.penetrations(world.astype(np.float32)[:, :, :3])
+        for ask in (self.model.penetrations, spherechain.Model(DOLL).spheres):
+            with self.assertWarnsRegex(spherechain.MatrixWarning, "doll.*they are world matrices") as caught:
+                ask(world.astype(np.float32)[:, :, :3])
+            self.assertEqual(caught.filename, __file__)
         with warnings.catch_warnings():
             warnings.simplefilter("error")  # it is said once; right poses say nothing
             self.model.penetrations(world.astype(np.float32)[:1])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What pip makes of the package that this build compiled: it installs without a network, whole and typed."""
+"""The wheel of the package that this build compiled: pip installs it without a network, whole and typed."""
 
 import csv
 import os

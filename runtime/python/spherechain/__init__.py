@@ -13,10 +13,12 @@ from ._answers import (CLASSES, CONTACT_ROW, FAULTS, PART_CONTACT, PENETRATION, 
 from ._model import Bone, MatrixWarning, Model, Part, Posed, Query
 from ._motion import Motion, load_motion
 from ._response import Ground, Responded, Response, ResponseState
-from ._tool import Baked, ToolError, bake, check
+from ._process import ToolError
+from ._tool import Baked, bake, check
 
 from ._native import VERSION as __version__
 
-__all__ = ["Baked", "Bone", "CLASSES", "CONTACT_ROW", "Contacts", "FAULTS", "Ground", "MatrixWarning", "Model", "Motion", "PART_CONTACT", "PENETRATION",
-           "Part", "PartContact", "Penetration", "Penetrations", "Posed", "Query", "Responded", "Response", "ResponseState",
-           "Rule", "SPHERE_PAIR", "STEP", "Step", "Steps", "TRANSFORM", "TRIANGLE_PAIR", "ToolError", "bake", "check", "load_motion"]
+__all__ = ["Baked", "Bone", "CLASSES", "CONTACT_ROW", "Contacts", "FAULTS", "Ground", "MatrixWarning", "Model", "Motion",
+           "PART_CONTACT", "PENETRATION", "Part", "PartContact", "Penetration", "Penetrations", "Posed", "Query",
+           "Responded", "Response", "ResponseState", "Rule", "SPHERE_PAIR", "STEP", "Step", "Steps", "TRANSFORM",
+           "TRIANGLE_PAIR", "ToolError", "bake", "check", "load_motion"]

@@ -4,7 +4,7 @@
 import os
 import sys
 
-from ._tool import program
+from ._process import program
 
 
 def main() -> None:

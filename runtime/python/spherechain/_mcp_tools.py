@@ -12,17 +12,18 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
+from ._answers import FAULTS
+from ._process import FAULTS_LEFT, LIBRARY_FAILS, TARGET_MISSED
+
 if TYPE_CHECKING:
     from .mcp import Call
 
-_TARGET_MISSED, _FAULTS_LEFT, _LIBRARY_FAILS = 5, 5, 6
 _TICKETS_MAX, _PICTURES_MAX, _EVENTS_MAX = 20, 3, 40
-_FAULTS = ("inside", "penetration", "deep_fold")
 Result = Tuple[Dict[str, Any], List[str]]  # the structured content, and pictures: PNGs in base64
 
 
 class Refused(Exception):
-    """What the agent asked for cannot be done; the text says why."""
+    """The call of an agent cannot be done; the text says why."""
 
 
 class Tool(NamedTuple):
@@ -77,7 +78,7 @@ def _input(call: "Call", path: str) -> str:
     found = _inside(call, path)
     if not found.exists():
         raise Refused(f"{path}: there is no such file")
-    # Such lists of files may name files anywhere.
+    # A manifest or a list may name files anywhere.
     if found.suffix.lower() in (".json", ".txt") and found.is_file():
         raise Refused(f"{path}: name the characters and recordings themselves")
     return os.fspath(found)
@@ -151,9 +152,9 @@ def _pictures(folder: Path, clip: Optional[str] = None) -> List[str]:
 
 
 def _pictures_of(call: "Call", character: str, *options: str, clip: Optional[str] = None) -> List[str]:
-    """Checks a character for its pictures. It may have no clip: then there is none."""
+    """Checks a character, and returns the pictures of that check: none if the character has no clip."""
     with tempfile.TemporaryDirectory(prefix="spherechain-") as folder:
-        call.run("check", character, "-o", folder, *options, fine=(_LIBRARY_FAILS,))
+        call.run("check", character, "-o", folder, *options, fine=(LIBRARY_FAILS,))
         return _pictures(Path(folder), clip)
 
 
@@ -164,7 +165,7 @@ def _check(call: "Call", arguments: Dict[str, Any]) -> Result:
     def run(folder: Path) -> Result:
         with tempfile.TemporaryDirectory(prefix="spherechain-") as other:
             result = Path(other, "check.json")
-            call.run("check", *library, *options, "-o", os.fspath(folder), "--json", os.fspath(result), fine=(_LIBRARY_FAILS,))
+            call.run("check", *library, *options, "-o", os.fspath(folder), "--json", os.fspath(result), fine=(LIBRARY_FAILS,))
             found = json.loads(result.read_text(encoding="utf-8"))
         pictures = _pictures(folder)
         tickets = [{**{key: ticket[key] for key in ("title", "character", "parts", "severity", "state")}, **ticket["worst"]}
@@ -185,7 +186,7 @@ def _play(call: "Call", arguments: Dict[str, Any]) -> Result:
     fps = arguments.get("fps", 30)
     with tempfile.TemporaryDirectory(prefix="spherechain-") as folder:
         asset, result = os.path.join(folder, "asset.sphc"), Path(folder, "play.json")
-        call.run("bake", character, "-o", asset, fine=(_TARGET_MISSED,))
+        call.run("bake", character, "-o", asset, fine=(TARGET_MISSED,))
         done = call.run("play", asset, "--source", character, *motion, "--json", os.fspath(result), f"--fps={fps}",
                         *_options(arguments, clip="--clip", respond="--respond", continuous="--continuous"))
         frames = json.loads(result.read_text(encoding="utf-8"))["frames"]
@@ -194,7 +195,7 @@ def _play(call: "Call", arguments: Dict[str, Any]) -> Result:
     for frame in frames:
         name = frame.get("clip", Path(arguments.get("motion", "")).name)
         clip = clips.setdefault(name, {"clip": name, "fps": fps, "frames": 0, "faulty_frames": 0})
-        found = [entry for entry in frame["penetrations"] if entry["class"] in _FAULTS]
+        found = [entry for entry in frame["penetrations"] if entry["class"] in FAULTS]
         clip["frames"] += 1
         clip["faulty_frames"] += bool(found)
         for entry in found:
@@ -204,7 +205,7 @@ def _play(call: "Call", arguments: Dict[str, Any]) -> Result:
             fault["last"] = number
             if entry["depth_mm"] > fault["depth_mm"]:
                 fault.update({"deepest_frame": number, **{key: entry[key] for key in ("class", "depth_mm", "direction", "swallowed")}})
-    worst = sorted(faults.values(), key=lambda fault: (_FAULTS.index(fault["class"]), -fault["depth_mm"]))
+    worst = sorted(faults.values(), key=lambda fault: (-FAULTS.index(fault["class"]), -fault["depth_mm"]))
     structured = {"clips": list(clips.values()), "faults": worst, "text": done.out.split("\n\n")[0]}
     if arguments.get("respond") or not (motion or any(clips)):
         return structured, []
@@ -215,7 +216,7 @@ def _fix(call: "Call", arguments: Dict[str, Any]) -> Result:
     character, motion = _input(call, arguments["character"]), _motion(call, arguments)
     options = _options(arguments, clip="--clip", budget_degrees="--budget", margin_mm="--margin", parts="--parts")
     with _output(call, arguments) as (output, written), tempfile.TemporaryDirectory(prefix="spherechain-") as report:
-        done = call.run("fix", character, *motion, "-o", os.fspath(output), "--report", report, *options, fine=(_FAULTS_LEFT,))
+        done = call.run("fix", character, *motion, "-o", os.fspath(output), "--report", report, *options, fine=(FAULTS_LEFT,))
         found = json.loads(Path(report, "fix.json").read_text(encoding="utf-8"))
         pictures = _pictures_of(call, character, *motion)[:1]
         if output.suffix.lower() == ".bvh":
@@ -248,7 +249,7 @@ def _export(call: "Call", arguments: Dict[str, Any]) -> Result:
     character = _input(call, arguments["character"])
     with _output(call, arguments) as (output, written), tempfile.TemporaryDirectory(prefix="spherechain-") as folder:
         asset = os.path.join(folder, "asset.sphc")
-        call.run("bake", character, "-o", asset, fine=(_TARGET_MISSED,))
+        call.run("bake", character, "-o", asset, fine=(TARGET_MISSED,))
         done = call.run("export", asset, "--source", character, "--to", arguments["to"], "-o", os.fspath(output),
                         *_options(arguments, volumes="--volumes", at_most="--at-most"))
     return {"files": written, "text": _without_paths(call, done.out)}, []
@@ -270,7 +271,7 @@ def _bake(call: "Call", arguments: Dict[str, Any]) -> Result:
     with _output(call, arguments) as (output, written), tempfile.TemporaryDirectory(prefix="spherechain-") as folder:
         report = Path(folder, "report.json")
         call.run("bake", character, "-o", os.fspath(output), "--report", os.fspath(report),
-                 *_options(arguments, spheres="--spheres", body="--body"), fine=(_TARGET_MISSED,))
+                 *_options(arguments, spheres="--spheres", body="--body"), fine=(TARGET_MISSED,))
         found = json.loads(report.read_text(encoding="utf-8"))
     return {"output": written[0], "spheres": found["counts"]["spheres"], "missed_targets": found["missed_targets"]}, []
 

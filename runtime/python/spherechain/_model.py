@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import warnings
 from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence, Tuple, Union
 
@@ -248,7 +249,7 @@ class Model:
         poses: what load_motion() gave, in which a fault stays one until it is clearly none, as in `play`; or an array
         (frames, joints, 3, 4), of which each pose is measured alone. contacts: rows are contacts, not penetrations.
         progress: called with frames done and all frames. threads: of an array and of contacts. query: keywords of Query,
-        and `other` where poses are an array. Lengths that end in _mm are in millimetres, others in the pose's units; a
+        of contacts `scope` and those that choose pairs; and `other` where poses are an array. Lengths that end in _mm are in millimetres, others in the pose's units; a
         volume that is not known is NaN.
         """
         return _table.table(self, poses, contacts, progress, threads, query)
@@ -467,7 +468,7 @@ class Model:
         self._is_looked_at.append(True)
         mistake = _pose_check.find_mistake(self, poses)
         if mistake:
-            warnings.warn(f"bones of {self.source_file}: {mistake}", MatrixWarning, stacklevel=2)
+            warnings.warn(f"bones of {self.source_file}: {mistake}", MatrixWarning, stacklevel=_level_of_caller())
 
     def _by_joint(self, gradient: np.ndarray, batch: Tuple[int, ...]) -> np.ndarray:
         """From (poses, bones, 3, 4) to (..., joints, 3, 4)."""
@@ -502,6 +503,14 @@ class Model:
             place = tuple(int(i) for i in np.argwhere(~(np.abs(array) <= _FAR))[0])
             raise ValueError(f"{name}{list(place)} is {array[place]}: pass numbers up to {_FAR:g}")
         return array
+
+
+def _level_of_caller() -> int:
+    """The stacklevel with which a warning of the function that asks names the line outside this package."""
+    level, frame = 1, sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
+        level, frame = level + 1, frame.f_back
+    return level
 
 
 def _joint(joint: Any) -> Tuple[str, Optional[np.ndarray]]:

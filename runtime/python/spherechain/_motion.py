@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._model import Model
-from ._process import Progress, run_tool
-from ._tool import PathLike
+from ._process import PathLike, Progress, run_tool
 
 _BIND_TOLERANCE = 1e-3  # of the height
 

@@ -14,7 +14,7 @@ import numpy as np
 if TYPE_CHECKING:
     from ._model import Model
 
-_POSES = 16  # that are looked at, evenly spaced
+_POSES = 16  # evenly spaced, are looked at
 # Shares of a bone's length, the median of bones and poses. Right palettes of real characters are below 1e-5, wrong ones above 0.1.
 _TORN = 0.1
 _TORN_MUCH = 0.25
@@ -25,7 +25,7 @@ _UNITS = {100: "metres, and the asset in centimetres", 0.01: "centimetres, and t
 
 
 def find_mistake(model: "Model", poses: np.ndarray) -> Optional[str]:
-    """What is wrong with skinning matrices (poses, joints, 3, 4) in the order of Model.joints; None: nothing that shows."""
+    """Says how skinning matrices (poses, joints, 3, 4) in the order of Model.joints are wrong; None: no mistake shows."""
     chosen = np.unique(np.linspace(0, len(poses) - 1, _POSES).astype(int)) if len(poses) else []
     given = model._by_bone(poses[chosen]).astype(np.float64)
     joints = _Joints(model)

@@ -4,24 +4,49 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import re
+import shutil
 import subprocess
 import threading
-from typing import Any, Callable, Iterator, List, NamedTuple, Optional, Sequence
+from pathlib import Path
+from typing import Any, Callable, Iterator, List, NamedTuple, Optional, Sequence, Union
 
-from ._tool import PathLike, ToolError, program
-
+PathLike = Union[str, "os.PathLike[str]"]
 Progress = Callable[[float, float], Any]  #: called with how much is done, and of how much
+
+# Exit codes with which the tool has done its work.
+TARGET_MISSED, FAULTS_LEFT, LIBRARY_FAILS = 5, 5, 6
 
 _STEP = re.compile(r"(\d+) of (\d+)")
 _MESSAGES = ("error", "warning", "note")
 _TERMINATION = 0.1  # seconds that a process has to end itself, before it is killed
 
 
+class ToolError(RuntimeError):
+    """The tool refused. The text is its own; `code` its exit code: 2 usage, 3 a file, 4 no such body, 1 internal."""
+
+    def __init__(self, message: str, code: int) -> None:
+        super().__init__(message)
+        self.code = code
+
+
 class Ended(NamedTuple):
     code: int
     out: str
     error: str
+
+
+def program(tool: Optional[PathLike] = None) -> str:
+    """The path of the tool, as bake() looks for it."""
+    inside = Path(__file__).with_name("tool") / "bin" / "spherechain"
+    name = os.environ.get("SPHERECHAIN_TOOL") or (str(inside) if inside.exists() else "spherechain")
+    name = name if tool is None else os.fspath(tool)
+    found = shutil.which(name)
+    if found is None:
+        raise FileNotFoundError(f"{name}: no such program. Pass tool=PATH, set SPHERECHAIN_TOOL, or put spherechain "
+                                "on the PATH (cmake --build --preset release --target spherechain)")
+    return found
 
 
 def run_tool(arguments: Sequence[str], tool: Optional[PathLike] = None, fine: Sequence[int] = (),
@@ -31,7 +56,8 @@ def run_tool(arguments: Sequence[str], tool: Optional[PathLike] = None, fine: Se
     fine: exit codes besides 0 that are no ToolError. progress: called when the tool says how far it is, every ten seconds.
     started: gets the process, to end it from another thread.
     """
-    with _process([program(tool), *arguments]) as process:
+    found = program(tool)
+    with _process([found, *arguments]) as process:
         started(process)
         lines: List[str] = []
         reader = threading.Thread(target=_read, args=(process.stderr, lines, progress), daemon=True)
@@ -41,7 +67,7 @@ def run_tool(arguments: Sequence[str], tool: Optional[PathLike] = None, fine: Se
         reader.join()
     error = "".join(lines)
     if process.returncode not in (0, *fine):
-        message = error.strip() or f"the tool ended with {process.returncode}"
+        message = error.strip() or f"{found} ended with {process.returncode}"
         raise ToolError(message.replace("spherechain: error: ", "", 1), process.returncode)
     return Ended(process.returncode, out, error)
 

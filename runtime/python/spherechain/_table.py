@@ -7,30 +7,38 @@ from typing import TYPE_CHECKING, Any, Dict, List, Optional
 
 import numpy as np
 
-from ._answers import CLASSES, FAULTS, PART_CONTACT, PENETRATION
+from ._answers import _NONE, CLASSES, FAULTS, PART_CONTACT, PENETRATION
 
 if TYPE_CHECKING:
     from ._model import Model
 
-_POSES = 64  # at a time: between two of these progress is told
-_NONE = 0xFFFFFFFF
+_POSES = 64  # at a time; progress is reported after each such batch
+# The options that choose which contacts are rows. The others change penetrations alone, or what a table does not show.
+_CONTACT_OPTIONS = ("scope", "ignored_spheres", "ignored_parts", "ignored_parts_of_other", "part_pairs", "other")
 
 
 def table(model: "Model", poses: Any, contacts: bool, progress: Any, threads: int, query: Dict[str, Any]) -> Dict[str, np.ndarray]:
     """Model.table()."""
+    from ._model import Posed
     from ._motion import Motion
     motion = poses if isinstance(poses, Motion) else None
     palettes = np.asarray(poses.palettes if motion else poses)
     if palettes.ndim != 4:
         raise ValueError(f"poses has the shape {palettes.shape}: pass (frames, joints, 3, 4), or what load_motion() gave")
+    unknown = set(query) - set(_CONTACT_OPTIONS)
+    if contacts and unknown:
+        raise TypeError(f"{min(unknown)} is no option of a table of contacts: {', '.join(_CONTACT_OPTIONS)}")
     morphs = motion.morph_weights if motion else None
+    other = query.get("other")
     ask = model.contacts if contacts else model.penetrations
     found: List[Any] = []
     for start in range(0, len(palettes), _POSES):
-        some = slice(start, start + _POSES)
+        some = slice(start, start + _POSES if start + _POSES < len(palettes) else None)
         if motion and not contacts:
             _follow(model, motion, some, found, query)
         else:
+            if isinstance(other, Posed):
+                query["other"] = Posed(other.model, *(None if of is None else of[some] for of in other[1:]))
             found += ask(palettes[some], morph_weights=None if morphs is None else morphs[some], threads=threads, **query)
         if progress:
             progress(len(found), len(palettes))
@@ -44,7 +52,6 @@ def table(model: "Model", poses: Any, contacts: bool, progress: Any, threads: in
             out["frame"] = out["frame"].astype(np.int64)
     else:
         out["frame"] = rows
-    other = query.get("other")
     names = np.array([part.name for part in model.parts], object)
     others = names if other is None else np.array([part.name for part in other.model.parts], object)
     return {**out, **(_contacts if contacts else _penetrations)(model, entries, names, others)}

@@ -5,27 +5,15 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
-import subprocess
 import tempfile
 from pathlib import Path
-from typing import Any, Dict, List, NamedTuple, Optional, Union
+from typing import Any, Dict, List, NamedTuple, Optional
 
 from ._model import Model
+from ._process import LIBRARY_FAILS, TARGET_MISSED, PathLike, run_tool
 
-PathLike = Union[str, "os.PathLike[str]"]
-
-_TARGET_MISSED, _LIBRARY_FAILS = 5, 6
 # bake() hands these over as options; all else is a key of the settings (docs/settings.md).
 _BAKE_OPTIONS = ("profile", "preview", "force")
-
-
-class ToolError(RuntimeError):
-    """The tool refused. The text is its own; `code` its exit code: 2 usage, 3 a file, 4 no such body, 1 internal."""
-
-    def __init__(self, message: str, code: int) -> None:
-        super().__init__(message)
-        self.code = code
 
 
 class Baked(NamedTuple):
@@ -52,7 +40,7 @@ def bake(path: PathLike, output: Optional[PathLike] = None, *, tool: Optional[Pa
         if settings:
             config.write_text(json.dumps(settings))
             options["config"] = config
-        _run(tool, arguments + _options(options), _TARGET_MISSED)
+        run_tool(arguments + _options(options), tool, (TARGET_MISSED,))
         return Baked(Model(asset), json.loads(report.read_text()))
 
 
@@ -68,7 +56,7 @@ def check(*library: PathLike, output: Optional[PathLike] = None, tool: Optional[
         result = Path(folder, "check.json")
         report = Path(folder, "report") if output is None else Path(output)
         arguments = ["check", *(os.fspath(path) for path in library), "--output", os.fspath(report), "--json", os.fspath(result)]
-        _run(tool, arguments + _options(options), _LIBRARY_FAILS)
+        run_tool(arguments + _options(options), tool, (LIBRARY_FAILS,))
         return json.loads(result.read_text())
 
 
@@ -82,23 +70,3 @@ def _options(options: Dict[str, Any]) -> List[str]:
         if value is not True:
             out.append(os.fspath(value) if isinstance(value, os.PathLike) else str(value))
     return out
-
-
-def program(tool: Optional[PathLike] = None) -> str:
-    """The path of the tool, as bake() looks for it."""
-    inside = Path(__file__).with_name("tool") / "bin" / "spherechain"
-    name = os.environ.get("SPHERECHAIN_TOOL") or (str(inside) if inside.exists() else "spherechain")
-    name = name if tool is None else os.fspath(tool)
-    found = shutil.which(name)
-    if found is None:
-        raise FileNotFoundError(f"{name}: no such program. Pass tool=PATH, set SPHERECHAIN_TOOL, or put spherechain "
-                                "on the PATH (cmake --build --preset release --target spherechain)")
-    return found
-
-
-def _run(tool: Optional[PathLike], arguments: List[str], fine: int) -> None:
-    found = program(tool)
-    done = subprocess.run([found, *arguments], capture_output=True, text=True, errors="replace", check=False)
-    if done.returncode not in (0, fine):
-        message = done.stderr.strip() or f"{found} ended with {done.returncode}"
-        raise ToolError(message.replace("spherechain: error: ", "", 1), done.returncode)

@@ -4,7 +4,7 @@
     python -m spherechain.mcp --root characters/
 
 It speaks revision 2026-07-28, in which each request names its revision, and those before it, which begin with `initialize`.
-docs/agents.md has the tools. Only the standard library is used.
+docs/agents.md has the tools. It uses the standard library alone, beside the package itself.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from typing import Any, Dict, List, Optional
 
 from . import __version__
 from ._mcp_tools import TOOLS, Refused, check_arguments
-from ._process import Ended, end, run_tool
-from ._tool import ToolError
+from ._process import Ended, ToolError, end, run_tool
 
 MODERN = "2026-07-28"
 LEGACY = ("2025-11-25", "2025-06-18", "2024-11-05")
 _META = "io.modelcontextprotocol/"
 _PARSE_ERROR, _INVALID_REQUEST, _NO_METHOD, _INVALID_PARAMS, _INTERNAL, _NO_VERSION = -32700, -32600, -32601, -32602, -32603, -32022
+_ABOUT = {"name": "spherechain", "version": __version__}
 _CALLS_AT_ONCE = 2
 _LINE_MAX = 1 << 20  # bytes
 _INSTRUCTIONS = ("Paths are relative to the server's root folder. Check a character first; play says which body parts "
@@ -155,17 +155,16 @@ class Server:
             raise _Error(_NO_VERSION, "Unsupported protocol version", {"supported": [MODERN, *LEGACY], "requested": version})
         if is_modern and not isinstance(meta.get(_META + "clientCapabilities"), dict):
             raise _Error(_INVALID_PARAMS, f"_meta has no {_META}clientCapabilities")
-        about = {"name": "spherechain", "version": __version__}
         common = {"capabilities": {"tools": {}}, "instructions": _INSTRUCTIONS}
         lasts = {"ttlMs": 3600000, "cacheScope": "public"} if is_modern else {}
         if method == "initialize" and not is_modern:
             self._is_open = True
             asked = params.get("protocolVersion")
-            self._answer(number, False, {"protocolVersion": asked if asked in LEGACY else LEGACY[0], "serverInfo": about, **common})
+            self._answer(number, False, {"protocolVersion": asked if asked in LEGACY else LEGACY[0], "serverInfo": _ABOUT, **common})
         elif method == "ping" and not is_modern:
             self._answer(number, False, {})
         elif method == "server/discover" and is_modern:
-            self._answer(number, True, {"supportedVersions": [MODERN, *LEGACY], "serverInfo": about, **common, **lasts})
+            self._answer(number, True, {"supportedVersions": [MODERN, *LEGACY], "serverInfo": _ABOUT, **common, **lasts})
         elif not is_modern and not self._is_open:
             raise _Error(_INVALID_PARAMS, f"send initialize first, or _meta with {_META}protocolVersion")
         elif method == "tools/list":
@@ -177,8 +176,7 @@ class Server:
 
     def _answer(self, number: Any, is_modern: bool, result: Dict[str, Any]) -> None:
         if is_modern:
-            about = {"name": "spherechain", "version": __version__}
-            result = {"resultType": "complete", **result, "_meta": {_META + "serverInfo": about}}
+            result = {"resultType": "complete", **result, "_meta": {_META + "serverInfo": _ABOUT}}
         self.send({"id": number, "result": result})
 
     def _call(self, number: Any, is_modern: bool, params: Dict[str, Any], meta: Dict[str, Any]) -> None:
@@ -218,7 +216,7 @@ class Server:
 def main(arguments: Optional[List[str]] = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m spherechain.mcp", description=__doc__.splitlines()[0])
     parser.add_argument("--root", default=".", help="folder that all paths must lie in (default: the current one)")
-    parser.add_argument("--tool", help="path of the command line tool (default: $SPHERECHAIN_TOOL, or on the PATH)")
+    parser.add_argument("--tool", help="path of the command line tool (default: $SPHERECHAIN_TOOL, inside the wheel, or on the PATH)")
     options = parser.parse_args(arguments)
     root = Path(options.root).resolve()
     if not root.is_dir():

@@ -3,6 +3,7 @@
 // the asset's order. T is float, or double for checks; in double each pair of spheres is tested.
 #include <type_traits>
 
+#include "binding.h"
 #include "model.h"
 #include "moment_pass.h"
 #include "parallel.h"

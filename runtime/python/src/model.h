@@ -3,13 +3,12 @@
 // reads out of bounds; spherechain/_model.py checks what people pass, and says it in their words.
 #pragma once
 
-#include "python.h"
-
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "convert.h"
 #include "runtime/src/skin/skin_table.h"
 #include "spherechain/spherechain.h"
 

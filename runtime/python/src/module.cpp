@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The module spherechain._native: arrays in and out.
+#include "binding.h"
 #include "model.h"
 #include "parallel.h"
 #include "spherechain/version.h"

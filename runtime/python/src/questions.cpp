@@ -2,6 +2,7 @@
 // The questions of a body, about each pose of a batch.
 #include <array>
 
+#include "binding.h"
 #include "model.h"
 #include "parallel.h"
 

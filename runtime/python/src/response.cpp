@@ -5,6 +5,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "binding.h"
 #include "model.h"
 
 namespace spherechain::python {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "baker/export/robot.h"
+#include "baker/import/notes.h"
 #include "baker/motion/clip.h"
 #include "baker/motion/robot_motion.h"
 #include "temporary_folder.h"
@@ -69,7 +70,9 @@ TEST_CASE("a URDF with the joint angles of a clip stands as the clip does, where
     return folder.path / name;
   };
   const SourceRig rig = read_source(write("figure.urdf", urdf_of(figure))).rig;
+  take_notes();
   const Clip clip = read_robot_motion(write("walk.csv", files[0].bytes), rig).clip;
+  CHECK(take_notes().empty());  // no joint goes beyond its limits
   const std::vector<std::string> names = link_names(figure);
   const Eigen::Isometry3d up(to_z_up(figure));
   double farthest = 0, widest = 0;
