@@ -3,9 +3,9 @@
 # The documents as pages, packed: OUT/spherechain-VERSION-site.zip. `scripts/release/site.sh OUT`.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
+. scripts/release/common.sh
 
 out=${1:?usage: site.sh OUT}
-version=$(sed -n 's/^project(spherechain VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 work=$(mktemp -d)
 trap 'rm -r "$work"' EXIT
 scripts/site.sh "$work/spherechain-$version-site" >&2
