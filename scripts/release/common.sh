@@ -39,6 +39,11 @@ write_tiny_asset() {
 }
 tiny_contacts="60 spheres, 175 pairs, 4 pairs of body parts"
 
+# copy_notices FILE: runtime/copyright with the text of the Apache licence, which it only names by its path on Debian.
+copy_notices() {
+  { cat runtime/copyright; echo; cat /usr/share/common-licenses/Apache-2.0; } >"$1"
+}
+
 # exports_of DLL: the functions that a DLL exports, sorted.
 exports_of() {
   objdump -p "$1" | sed -n '/Ordinal\/Name Pointer/,/^$/p' | awk '/\[/ && $NF !~ /Table$/ {print $NF}' | sort

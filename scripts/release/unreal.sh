@@ -17,7 +17,7 @@ mkdir -p $library/lib/Linux $library/lib/Win64 $binaries
 cp -r runtime/unreal/* $plugin/
 sed -i "s/\"VersionName\": \"0.0.0\"/\"VersionName\": \"$version\"/" $plugin/Spherechain.uplugin
 cp runtime/LICENSE $plugin/
-cp runtime/copyright $library/
+copy_notices $library/copyright
 cp -r build/engines/linux-static/include $library/
 strip --strip-debug -o $library/lib/Linux/libspherechain.a build/engines/linux-static/lib/libspherechain.a
 x86_64-w64-mingw32-strip -o $binaries/spherechain.dll build/engines/windows-shared/bin/spherechain.dll

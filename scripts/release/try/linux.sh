@@ -38,7 +38,7 @@ cmake -G Ninja -S stranger -B by_cmake >/dev/null && cmake --build by_cmake >/de
 check by_cmake/stranger_c
 check by_cmake/stranger_cpp
 apt-get purge -y -qq 'libspherechain*' spherechain libassimp5 libtinygltf2d libpugixml1v5 >/dev/null 2>&1
-for archive in *.tar.gz; do tar xf "$archive"; done
+for archive in *.tar.gz; do tar xf "$archive" --keep-old-files; done  # neither has a file of the other
 rm human.sphc view.html
 bake spherechain-*-linux-x86_64/bin/spherechain
 cmake -G Ninja -S stranger -B by_archive -D CMAKE_PREFIX_PATH="$(ls -d "$PWD"/spherechain-*-linux-x86_64/)" >/dev/null && cmake --build by_archive >/dev/null
