@@ -12,7 +12,6 @@ const [root, demo, out] = process.argv.slice(2);
 if (!out) throw new Error('usage: build.mjs ROOT DEMO.html OUT');
 const here = dirname(fileURLToPath(import.meta.url));
 const PICTURES = ['.png', '.jpg', '.svg', '.webp'];
-const QUESTIONS = 'five-questions'; // the heading of README.md whose table is the menu
 const DEMO = 'demo/index.html';
 
 const escape = (text) => text.replace(/[&<>"]/g, (c) => ({ '&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;' })[c]);
