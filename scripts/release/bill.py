@@ -60,6 +60,10 @@ def content(path):
                     expected = components.owners([Path("/usr/lib/x86_64-linux-gnu", library) for library in Elf(file).needed
                                                   if library not in carried])
             inside = {name: version for name, version in inside.items() if name not in expected}
+        # Debian has the text in /usr/share/common-licenses.
+        if path.suffix != ".deb" and any(components.LICENCES[name] == "Apache-2.0" for name in inside) and not any(
+                b"Version 2.0, January 2004" in file.read_bytes() for file in files):
+            raise SystemExit(f"bill: {path}: it holds code under the Apache licence, but not the licence's text")
         pages = components.in_pages(file for file in files if file.suffix in (".html", ".js"))
         is_gpl = has_tool or "blender" in path.name
         licence = "MIT AND GPL-3.0-or-later" if path.suffix == ".whl" else "GPL-3.0-or-later" if is_gpl else "MIT"
