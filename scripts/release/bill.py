@@ -41,7 +41,7 @@ def unpack(path, folder):
 
 
 def content(path):
-    """What a package holds: (licence, {package of Debian: version} inside, the same that it expects, npm's packages)."""
+    """The content of a package: (licence, {package of Debian: version} inside, the same that it expects, npm's packages)."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         unpack(path, folder)
