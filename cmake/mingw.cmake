@@ -1,4 +1,4 @@
-# Toolchain: Windows (x86-64) by Debian's mingw-w64. scripts/release/windows_common.sh uses it; it runs the programs with wine.
+# Toolchain: Windows (x86-64) by Debian's mingw-w64. scripts/windows.sh and scripts/release use it.
 # -D SPHERECHAIN_WINDOWS_ROOT=<folder>: headers and CMake packages that are the same for every machine, and nothing of Linux.
 set(CMAKE_SYSTEM_NAME Windows)
 set(CMAKE_SYSTEM_PROCESSOR x86_64)

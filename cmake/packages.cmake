@@ -1,4 +1,4 @@
-# Debian's packages by CPack; scripts/release/linux.sh makes them all. Of one build, `cpack -G DEB` makes what it has:
+# Debian's packages by CPack; scripts/release/linux.sh makes them all. `cpack -G DEB` makes those of one build:
 #   a shared build without the baker and CUDA: libspherechain (runtime) and libspherechain-dev (dev), MIT
 #   a build with the baker: spherechain (tools), GPL-3.0-or-later
 set(CPACK_PACKAGE_NAME spherechain)

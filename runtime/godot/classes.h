@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The two classes that scripts see. Each method does what its row in classes.cpp names; README.md is for their users.
+// The two classes that scripts see. register.cpp lists their methods for Godot; README.md explains them.
 #pragma once
 
 #include <spherechain/spherechain.h>

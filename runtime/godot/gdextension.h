@@ -117,7 +117,7 @@ struct Initialization {
 };
 using FunctionLookup = void* (*)(const char* name);
 
-// Functions of Godot. A member is called as its field here is, with `lookup` the name that Godot knows.
+// Functions of Godot. Each name is the one that Godot knows, and that of a field of Interface.
 #define SPHERECHAIN_GODOT_FUNCTIONS(F)                                                                         \
   F(print_error, void, (const char*, const char*, const char*, int32_t, Bool))                                 \
   F(string_name_new_with_latin1_chars, void, (StringName*, const char*, Bool))                                 \

@@ -38,26 +38,12 @@ Value Value::of(const char* utf8) {
 
 Value Value::of_object(Object* object) { return object == nullptr ? Value() : from(kObject, &object); }
 
-bool Value::as_bool() const { return as<Bool>(kBool) != 0; }
-
-int64_t Value::as_int() const {
-  int64_t out = 0;
-  if (type() == kInt) api.get_variant_to_type_constructor(kInt)(&out, const_cast<Variant*>(&variant_));
-  return out;
-}
-
 std::string Value::as_text() const {
   if (type() != kString && type() != kStringName) return {};
   String string;  // Godot converts a StringName, too
   api.get_variant_to_type_constructor(kString)(&string, const_cast<Variant*>(&variant_));
   std::string out = text_of(string);
   api.variant_get_ptr_destructor(kString)(&string);
-  return out;
-}
-
-Object* Value::as_object() const {
-  Object* out = nullptr;
-  if (type() == kObject) api.get_variant_to_type_constructor(kObject)(&out, const_cast<Variant*>(&variant_));
   return out;
 }
 

@@ -48,13 +48,12 @@ class Value {
 
   int32_t type() const { return api.variant_get_type(&variant_); }
   // The value, or a default where the type is another one.
-  bool as_bool() const;
-  int64_t as_int() const;
+  bool as_bool() const { return as<Bool>(kBool) != 0; }
+  int64_t as_int() const { return as<int64_t>(kInt); }
   Vector3 as_vector3() const { return as<Vector3>(kVector3); }
   Quaternion as_quaternion() const { return as<Quaternion>(kQuaternion); }
   Transform3D as_transform() const { return as<Transform3D>(kTransform3D); }
   std::string as_text() const;  // of a String or StringName
-  Object* as_object() const;
 
   // Calls a method by its name. Nil where the object has no such method.
   template <typename... Arguments>
@@ -71,7 +70,7 @@ class Value {
   Value call_list(const Name& method, const Variant* const* arguments, int64_t count);
   template <typename T>
   T as(int32_t wanted) const {
-    T out;
+    T out{};
     if (type() == wanted) api.get_variant_to_type_constructor(wanted)(&out, const_cast<Variant*>(&variant_));
     return out;
   }

@@ -9,7 +9,7 @@ using UnityEngine;
 [DefaultExecutionOrder(-10)]  // before SelfCollision, which then shows the faults that are left
 public sealed class SelfCollisionResponse : MonoBehaviour
 {
-    [Tooltip("What `spherechain bake` wrote, renamed to NAME.sphc.bytes")]
+    [Tooltip("The file that `spherechain bake` wrote, renamed to NAME.sphc.bytes")]
     public TextAsset asset;
     [Tooltip("All skinned meshes of the character; none: those below this object")]
     public SkinnedMeshRenderer[] renderers;

@@ -7,7 +7,7 @@ using UnityEngine;
 
 public sealed class SelfCollision : MonoBehaviour
 {
-    [Tooltip("What `spherechain bake` wrote, renamed to NAME.sphc.bytes")]
+    [Tooltip("The file that `spherechain bake` wrote, renamed to NAME.sphc.bytes")]
     public TextAsset asset;
     [Tooltip("All skinned meshes of the character; none: those below this object")]
     public SkinnedMeshRenderer[] renderers;

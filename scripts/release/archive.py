@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Packs a folder: the same bytes from the same files, whenever and wherever. `archive.py FOLDER OUT.zip|OUT.tar.gz|OUT.tgz`.
 
 The archive holds FOLDER's content under FOLDER's own name; a .zip with --flat holds the content alone. Times are that of the

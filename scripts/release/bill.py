@@ -41,14 +41,14 @@ def unpack(path, folder):
 
 
 def content(path):
-    """What a package holds: (licence, {package of Debian: version} inside, the same that it expects, npm's packages)."""
+    """The content of a package: (licence, {package of Debian: version} inside, the same that it expects, npm's packages)."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         unpack(path, folder)
         files = [file for file in folder.rglob("*") if file.is_file()]
         binaries = [file for file in files if file.open("rb").read(4)[:2] in (b"\x7fE", b"MZ") or file.suffix in (".a", ".wasm")]
         has_tool = any(file.name == "spherechain" and file in binaries for file in files)
-        has_runtime = bool(binaries) or any(b"AGFzbQ" in file.read_bytes() for file in files if file.name == "index.js")
+        has_runtime = bool(binaries) or any(b"AGFzbQ" in file.read_bytes() for file in files if file.suffix in (".html", ".js"))
         inside, expected = dict(components.libraries_in(folder)), {}
         if has_runtime:
             inside.update(components.compiled_in("runtime/"))
@@ -60,7 +60,11 @@ def content(path):
                     expected = components.owners([Path("/usr/lib/x86_64-linux-gnu", library) for library in Elf(file).needed
                                                   if library not in carried])
             inside = {name: version for name, version in inside.items() if name not in expected}
-        pages = components.in_pages(file for file in files if file.suffix == ".html")
+        # Debian has the text in /usr/share/common-licenses.
+        if path.suffix != ".deb" and any(components.LICENCES[name] == "Apache-2.0" for name in inside) and not any(
+                b"Version 2.0, January 2004" in file.read_bytes() for file in files):
+            raise SystemExit(f"bill: {path}: it holds code under the Apache licence, but not the licence's text")
+        pages = components.in_pages(file for file in files if file.suffix in (".html", ".js"))
         is_gpl = has_tool or "blender" in path.name
         licence = "MIT AND GPL-3.0-or-later" if path.suffix == ".whl" else "GPL-3.0-or-later" if is_gpl else "MIT"
         return licence, inside, expected, pages

@@ -5,7 +5,7 @@
 set -euo pipefail
 [[ $# -eq 1 ]] || { echo "usage: scripts/release/blender.sh OUT" >&2; exit 2; }
 cd "$(dirname "$0")/../.."
-version=$(sed -n 's/^project(spherechain VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+. scripts/release/common.sh
 
 work=$(mktemp -d)
 trap 'rm -r "$work"' EXIT

@@ -21,6 +21,34 @@ skip() {
   exit 77
 }
 
+# unpack ARCHIVE: a trial's start. Sets `work`, a folder that is removed when the trial ends, and unpacks the archive there.
+unpack() {
+  work=$(mktemp -d)
+  trap 'rm -rf "$work"' EXIT
+  cmake -E chdir "$work" cmake -E tar xf "$(realpath -e "$1")"
+}
+
+# An asset of tests/golden. Its character has no contacts at rest, and contacts once an arm is turned into the body.
+doll=$(find tests/golden -name doll.sphc | sort | head -1)
+
+# write_tiny_asset FILE: an asset with contacts at rest. The programs in tests/package/stranger print `tiny_contacts` of it.
+write_tiny_asset() {
+  cmake --preset release >/dev/null
+  cmake --build --preset release --target write_tiny_asset >/dev/null
+  build/release/bin/write_tiny_asset "$1"
+}
+tiny_contacts="60 spheres, 175 pairs, 4 pairs of body parts"
+
+# copy_notices FILE: runtime/copyright with the text of the Apache licence, which it only names by its path on Debian.
+copy_notices() {
+  { cat runtime/copyright; echo; cat /usr/share/common-licenses/Apache-2.0; } >"$1"
+}
+
+# exports_of DLL: the functions that a DLL exports, sorted.
+exports_of() {
+  objdump -p "$1" | sed -n '/Ordinal\/Name Pointer/,/^$/p' | awk '/\[/ && $NF !~ /Table$/ {print $NF}' | sort
+}
+
 # Completes build/release as far as the packages with the tool need it. The page of `view` holds the JavaScript package.
 build_tool() {
   needs emcc emscripten

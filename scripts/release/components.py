@@ -78,13 +78,15 @@ def libraries_in(folder):
     return owners([Path("/usr/lib/x86_64-linux-gnu", name) for name in sorted(names)])
 
 
-# The npm packages that pages hold, by the notice that stays in a page.
-NOTICES = {"three": b"Three.js Authors", "uplot": b"Leon Sorokin"}
+# The npm packages that pages hold, by the notice that stays in a page or its script.
+NOTICES = {"minisearch": b"Luca Ongaro", "three": b"Three.js Authors", "uplot": b"Leon Sorokin"}
 
 
 def in_pages(pages):
-    """[(name, version, licence)] of the npm packages that these web pages hold."""
-    lock = json.loads((ROOT / "baker" / "page" / "web" / "package-lock.json").read_text())["packages"]
+    """[(name, version, licence)] of the npm packages that these web pages and scripts hold."""
+    lock = {}
+    for folder in ("baker/page/web", "scripts/site"):
+        lock.update(json.loads((ROOT / folder / "package-lock.json").read_text())["packages"])
     texts = [page.read_bytes() for page in pages]
     bundled = {name: lock[f"node_modules/{name}"] for name, notice in NOTICES.items() if any(notice in text for text in texts)}
     return [(name, of["version"], of["license"]) for name, of in bundled.items()]

@@ -22,7 +22,8 @@ for system in linux windows; do
   cmake --build build/engines/build-godot-$system >/dev/null
   $strip -o $addon/bin/libspherechain_godot.$system.x86_64.$ending build/engines/build-godot-$system/libspherechain_godot.$ending
 done
-cp runtime/godot/spherechain.gdextension runtime/godot/example.gd runtime/godot/README.md runtime/LICENSE runtime/copyright $addon/
+cp runtime/godot/spherechain.gdextension runtime/godot/example.gd runtime/godot/README.md runtime/LICENSE $addon/
+copy_notices $addon/copyright
 find $addon -type f -exec chmod 644 {} +
 python3 scripts/release/archive.py --flat build/engines/godot "$out/spherechain-$version-godot.zip"
 echo "$out/spherechain-$version-godot.zip"

@@ -25,8 +25,10 @@ for package in "$stage"/debian/*.deb; do
   echo "$1/$(basename "$package")"
 done
 
-# Both archives unpack into one folder.
+# Both archives unpack into one folder, so that their licences lie in two.
 cmake --install build/release --component sdk --prefix "$stage/sdk/$name" --strip >/dev/null
+mv "$stage/sdk/$name/share/doc/spherechain" "$stage/sdk/$name/share/doc/libspherechain"
+copy_notices "$stage/sdk/$name/share/doc/libspherechain/copyright"
 python3 scripts/release/archive.py "$stage/sdk/$name" "$1/spherechain-sdk-$version-linux-x86_64.tar.gz"
 python3 scripts/release/tool_bundle.py "$stage/tool/$name"
 python3 scripts/release/archive.py "$stage/tool/$name" "$1/$name.tar.gz"

@@ -8,11 +8,14 @@ cd "$(dirname "$0")/../.."
 needs patchelf patchelf
 
 build_tool
-platform=linux-x64 stage=build/release-stage/npm
-rm -rf $stage
-python3 scripts/release/tool_bundle.py $stage
-mv $stage/share/doc/spherechain/LICENSE $stage/
-cat >$stage/package.json <<END
+platform=linux-x64 library=build/release-stage/npm/library tool=build/release-stage/npm/tool
+rm -rf build/release-stage/npm
+mkdir -p build/release-stage/npm
+cp -r build/release/javascript/spherechain $library
+copy_notices $library/copyright
+python3 scripts/release/tool_bundle.py $tool
+mv $tool/share/doc/spherechain/LICENSE $tool/
+cat >$tool/package.json <<END
 {
   "name": "@spherechain/$platform",
   "version": "$version",
@@ -25,6 +28,6 @@ cat >$stage/package.json <<END
   "libc": ["glibc"]
 }
 END
-for package in build/release/javascript/spherechain $stage; do
+for package in $library $tool; do
   (cd $package && npm pack --silent --offline --pack-destination "$(realpath "$1")") | sed "s|^|$1/|"
 done

@@ -16,7 +16,7 @@ cp runtime/unity/CHANGELOG.md $package/
 cp runtime/unity/index.md $package/README.md
 cp runtime/unity/index.md $package/Documentation~/
 cp runtime/LICENSE $package/LICENSE.md
-cp runtime/copyright "$package/Third Party Notices.md"
+copy_notices "$package/Third Party Notices.md"
 cp runtime/csharp/*.cs runtime/csharp/Spherechain.asmdef $package/Runtime/
 cp samples/csharp/SelfCollision.cs $package/Samples~/Contacts/
 cp runtime/unity/SelfCollisionResponse.cs $package/Samples~/Response/

@@ -17,11 +17,11 @@ mkdir -p $library/lib/Linux $library/lib/Win64 $binaries
 cp -r runtime/unreal/* $plugin/
 sed -i "s/\"VersionName\": \"0.0.0\"/\"VersionName\": \"$version\"/" $plugin/Spherechain.uplugin
 cp runtime/LICENSE $plugin/
-cp runtime/copyright $library/
+copy_notices $library/copyright
 cp -r build/engines/linux-static/include $library/
 strip --strip-debug -o $library/lib/Linux/libspherechain.a build/engines/linux-static/lib/libspherechain.a
 x86_64-w64-mingw32-strip -o $binaries/spherechain.dll build/engines/windows-shared/bin/spherechain.dll
-{ echo "LIBRARY spherechain.dll"; echo EXPORTS; python3 scripts/release/engines/exports.py $binaries/spherechain.dll; } >build/engines/unreal/spherechain.def
+{ echo "LIBRARY spherechain.dll"; echo EXPORTS; exports_of $binaries/spherechain.dll; } >build/engines/unreal/spherechain.def
 llvm-dlltool -m i386:x86-64 -d build/engines/unreal/spherechain.def -l $library/lib/Win64/spherechain.lib
 find $plugin -type f -exec chmod 644 {} +
 python3 scripts/release/archive.py $plugin "$out/spherechain-$version-unreal.zip"

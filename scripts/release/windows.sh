@@ -13,5 +13,6 @@ rm -rf $stage
 for component in sdk samples; do
   cmake --install build/windows-dll --component $component --prefix "$stage/$name" --strip >/dev/null
 done
+copy_notices "$stage/$name/share/doc/spherechain/copyright"
 python3 scripts/release/archive.py "$stage/$name" "$1/spherechain-sdk-$version-windows-x86_64.zip"
 ls "$1/spherechain-sdk-$version-windows-x86_64.zip"

@@ -7,18 +7,15 @@ set -euo pipefail
 [[ $# -ge 1 ]] || { echo "usage: scripts/release/try/blender.sh OUT [--install]" >&2; exit 2; }
 out=$(realpath "$1")
 cd "$(dirname "$0")/../../.."
+. scripts/release/common.sh
 
-if [[ ${2:-} == --install ]] && ! command -v blender >/dev/null; then
-  echo "Installing Debian's package blender"
-  apt-get update -qq
-  DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends blender >/dev/null
-fi
-command -v blender >/dev/null || { echo "skipped: no Blender here; --install installs Debian's"; exit 77; }
+[[ ${2:-} != --install ]] || needs blender blender
+command -v blender >/dev/null || skip "no Blender here; --install installs Debian's"
 models=/usr/share/assimp/models
-[[ -e $models/Collada/human.zae ]] || { echo "skipped: no $models (Debian's assimp-testmodels)"; exit 77; }
+[[ -e $models/Collada/human.zae ]] || skip "no $models (Debian's assimp-testmodels)"
 [[ -x build/release/bin/spherechain ]] && export PATH=$PWD/build/release/bin:$PATH
-command -v spherechain >/dev/null || { echo "skipped: no spherechain in build/release/bin or on PATH"; exit 77; }
-zip=$(echo "$out"/spherechain-*-blender.zip)
+command -v spherechain >/dev/null || skip "no spherechain in build/release/bin or on PATH"
+zip=$out/spherechain-$version-blender.zip
 [[ -e $zip ]] || { echo "try/blender: no $zip: run scripts/release/blender.sh first" >&2; exit 1; }
 
 try=$(mktemp -d)

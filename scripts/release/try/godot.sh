@@ -5,11 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 . scripts/release/common.sh
-doll=$(find tests/golden -name doll.sphc | sort | head -1)
-archive=$(ls "$1"/*godot*.zip)
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-(cd "$work" && cmake -E tar xf "$archive")
+unpack "$1/spherechain-$version-godot.zip"
 addon=$work/addons/spherechain
 
 # Each library that the .gdextension names is there, and has the entry.
@@ -22,9 +18,11 @@ exported=$(nm -D --defined-only "$addon/bin/libspherechain_godot.linux.x86_64.so
 
 sources=(scripts/release/try/godot/*.cpp)
 options=(-std=c++20 -O1 -I.)
+scripts/release/engines/runtimes.sh linux-static
 g++ "${options[@]}" -Ibuild/engines/linux-static/include "${sources[@]}" build/engines/linux-static/lib/libspherechain.a -ldl -o "$work/trial"
 "$work/trial" "$addon/bin/libspherechain_godot.linux.x86_64.so" "$doll" "$work/copy.sphc"
 if command -v x86_64-w64-mingw32-g++-posix >/dev/null && command -v wine >/dev/null; then
+  scripts/release/engines/runtimes.sh windows-static
   x86_64-w64-mingw32-g++-posix "${options[@]}" -static -Ibuild/engines/windows-static/include "${sources[@]}" \
     build/engines/windows-static/lib/libspherechain.a -o "$work/trial.exe"
   WINEPREFIX=$PWD/build/wine WINEDEBUG=-all wine "$work/trial.exe" "$addon/bin/libspherechain_godot.windows.x86_64.dll" "$doll" "$work/copy.sphc"

@@ -5,11 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 . scripts/release/common.sh
-doll=$(find tests/golden -name doll.sphc | sort | head -1)
-archive=$(ls "$1"/*recipes*.zip)
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-(cd "$work" && cmake -E tar xf "$archive")
+unpack "$1/spherechain-$version-recipes.zip"
 recipes=$work/recipes
 scripts/release/engines/runtimes.sh linux-static
 build=$PWD/build/engines/build-linux-static
@@ -18,7 +14,9 @@ cmake -D PORT_FOLDER="$recipes/vcpkg/ports/spherechain" -D BUILD="$build" -D PAC
 [[ -z $(find "$work/vcpkg" -type d -empty) ]] || { echo "recipes: the port leaves empty folders" >&2; exit 1; }
 cmake -G Ninja -S tests/package/stranger -B "$work/stranger" -D CMAKE_PREFIX_PATH="$work/vcpkg" -D CMAKE_FIND_USE_PACKAGE_REGISTRY=OFF >/dev/null
 cmake --build "$work/stranger" >/dev/null
-echo "vcpkg: $("$work/stranger/stranger_c" "$doll")"
+write_tiny_asset "$work/tiny.sphc"
+"$work/stranger/stranger_c" "$work/tiny.sphc" | diff - <(echo "$tiny_contacts")
+echo "vcpkg: $tiny_contacts"
 
 recipe=$recipes/conan/recipes/spherechain/all
 python3 scripts/release/try/recipes/conan_steps.py "$recipe" "$build" "$PWD/build/engines/linux-static"

@@ -6,14 +6,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 . scripts/release/common.sh
-for command in mcs mono lld-link; do
-  command -v $command >/dev/null || skip "$command is missing (Debian: mono-mcs, lld)"
+for command in mcs mono clang lld-link; do
+  command -v $command >/dev/null || skip "$command is missing (Debian: mono-mcs, clang, lld)"
 done
-doll=$(find tests/golden -name doll.sphc | sort | head -1)
-archive=$(ls "$1"/*unreal*.zip)
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-(cd "$work" && cmake -E tar xf "$archive")
+unpack "$1/spherechain-$version-unreal.zip"
 plugin=$work/Spherechain
 stubs=scripts/release/try/unreal
 python3 $stubs/check_plugin.py "$plugin"

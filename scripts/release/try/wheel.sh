@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Installs the wheel in each Python from 3.9 to 3.13 that this machine has, without a network, and goes from a character to its
-# first contacts: `scripts/release/try/wheel.sh OUT`. A Python
-# without numpy gets a stand-in for its arrays, so that at least the compiled module is tried there.
+# first contacts: `scripts/release/try/wheel.sh OUT`. A Python without numpy gets a stand-in for its arrays, so that at least the
+# compiled module is tried there.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 . scripts/release/common.sh

@@ -188,33 +188,21 @@ void construct_one(void* to, const void* const*) {
                                                    : make<Bytes>();
 }
 
-// The functions of one kind, by type.
-#define TYPES(F) \
-  F(kBool)       \
-  F(kInt)        \
-  F(kFloat)      \
-  F(kString)     \
-  F(kVector3) F(kQuaternion) F(kTransform3D) F(kStringName) F(kObject) F(kDictionary) F(kArray) F(kPackedByteArray)
-Interface::FromType get_from(int32_t type) {
-#define F(t) \
-  if (type == t) return from_one<t>;
-  TYPES(F)
-#undef F
-  return nullptr;
+struct Functions {
+  Interface::FromType from = nullptr;
+  Interface::ToType to = nullptr;
+  Interface::Destructor destroy = nullptr;
+};
+template <int32_t... Types>
+std::map<int32_t, Functions> make_functions() {
+  return {{Types, {from_one<Types>, to_one<Types>, destroy_one<Types>}}...};
 }
-Interface::ToType get_to(int32_t type) {
-#define F(t) \
-  if (type == t) return to_one<t>;
-  TYPES(F)
-#undef F
-  return nullptr;
-}
-Interface::Destructor get_destructor(int32_t type) {
-#define F(t) \
-  if (type == t) return destroy_one<t>;
-  TYPES(F)
-#undef F
-  return nullptr;
+// The functions of a type; null for a type that the addon has no use for.
+Functions functions_of(int32_t type) {
+  static const auto all = make_functions<kBool, kInt, kFloat, kString, kVector3, kQuaternion, kTransform3D, kStringName,
+                                         kObject, kDictionary, kArray, kPackedByteArray>();
+  const auto found = all.find(type);
+  return found == all.end() ? Functions{} : found->second;
 }
 Interface::Constructor get_constructor(int32_t type, int32_t index) {
   if (index != 0) return nullptr;
@@ -325,10 +313,10 @@ const std::map<std::string, void*>& functions() {
       FUNCTION(variant_destroy, [](Variant* value) { destroy(*value); }),
       FUNCTION(variant_get_type, [](const Variant* value) { return content(*value).type; }),
       FUNCTION(variant_call, call),
-      FUNCTION(get_variant_from_type_constructor, get_from),
-      FUNCTION(get_variant_to_type_constructor, get_to),
+      FUNCTION(get_variant_from_type_constructor, [](int32_t type) { return functions_of(type).from; }),
+      FUNCTION(get_variant_to_type_constructor, [](int32_t type) { return functions_of(type).to; }),
       FUNCTION(variant_get_ptr_constructor, get_constructor),
-      FUNCTION(variant_get_ptr_destructor, get_destructor),
+      FUNCTION(variant_get_ptr_destructor, [](int32_t type) { return functions_of(type).destroy; }),
       FUNCTION(dictionary_operator_index,
                [](Dictionary* in, const Variant* key) {
                  return reinterpret_cast<Variant*>(&static_cast<Entries*>(in->data)->value[text_of(*key)]);

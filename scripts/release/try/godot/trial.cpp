@@ -260,8 +260,8 @@ int main(int argc, char** argv) {
   require(int_of(call(response, "apply", {of_float(0.03)})) == 0 && says("bind() a body"),
           "apply() to a freed skeleton");
   Variant last_response = of_node(response), last_body = of_node(body);
-  response->references = body->references = 1 + (body->references == 3);  // the script's variables end here
-  response->references = 1;
+  --response->references;  // the script's variables end here
+  --body->references;
   destroy(last_response);
   destroy(last_body);
   for (int32_t level = 3; level >= 0; --level) initialization.deinitialize(initialization.userdata, level);

@@ -24,10 +24,10 @@ class SpherechainConan(ConanFile):
     def layout(self):
         cmake_layout(self, src_folder="src")
 
-    # The library is compiled with their headers. A program that links it needs neither.
+    # The library is compiled with their headers, and tested with these versions: Debian 12's. A program that links it needs neither.
     def requirements(self):
-        self.requires("flatbuffers/24.3.25", visible=False, libs=False, run=False)
-        self.requires("highway/1.2.0", visible=False, libs=False, run=False)
+        self.requires("flatbuffers/2.0.8", visible=False, libs=False, run=False)
+        self.requires("highway/1.0.3", visible=False, libs=False, run=False)
 
     def build_requirements(self):
         self.tool_requires("cmake/[>=3.25 <4]")
