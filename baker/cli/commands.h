@@ -97,9 +97,9 @@ struct ScoreOptions {
 ExitCode run_score(const ScoreOptions& options);
 
 struct ExportOptions {
-  std::string asset, source, format, output, filter, volumes;  // empty volumes: what the format holds best
-  GivenSize size;                                              // the asset's in place of a file's
-  int at_most = 0;                                             // 0: as many as pay
+  std::string asset, source, motion, format, output, filter, volumes;  // empty volumes: what the format holds best
+  GivenSize size;                                                      // the asset's in place of a file's
+  int at_most = 0;                                                     // 0: as many as pay
   bool force = false;
 };
 ExitCode run_export(const ExportOptions& options);

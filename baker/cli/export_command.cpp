@@ -133,8 +133,9 @@ std::vector<std::string> export_formats() {
 
 ExitCode run_export(const ExportOptions& options) {
   const ExportFormat& format = format_of(options.format);
-  const std::vector<CommandFile> inputs =
-      with_source({{"ASSET", options.asset}, {"--filter", options.filter}}, "--source", options.source);
+  const MotionChoice motion{{}, {}, options.motion};
+  const std::vector<CommandFile> inputs = with_motion(
+      with_source({{"ASSET", options.asset}, {"--filter", options.filter}}, "--source", options.source), motion);
   const FileKind kind = format.of_source != nullptr ? FileKind::kGlb : FileKind::kColliders;
   const Force force = options.force ? Force::kGiven : Force::kOffered;
   std::vector<OutputFile> outputs{{"--output", options.output, kind}};
@@ -153,14 +154,20 @@ ExitCode run_export(const ExportOptions& options) {
   std::optional<PartFilter> filter;
   if (!options.filter.empty()) filter = read_part_filter(options.filter, asset);
   std::optional<AnimatedAsset> animated;
-  if (!options.source.empty()) animated.emplace(open(), options.asset, options.source, MotionChoice(), FrameChoice());
+  if (!options.source.empty()) animated.emplace(open(), options.asset, options.source, motion, FrameChoice());
   SourceGlb source;
   if (format.of_source != nullptr) source = read_source_glb(asset, options);
   const std::string shape = options.volumes.empty() ? format.volumes : options.volumes;
   Colliders colliders = fit_volumes(asset, volume_shape(shape), options.at_most);
   if (filter) ignore_by_filter(*filter, colliders);
   std::vector<PosedClip> clips;
-  if (animated && format.of_clips != nullptr) clips = posed_clips(*animated, colliders);
+  if (animated && format.of_clips != nullptr) {
+    clips = posed_clips(*animated, colliders);
+    if (clips.empty() && !options.motion.empty()) {
+      throw Error(ExitCode::kFile, options.motion + ": moves no bones, so joints have no angles");
+    }
+    if (!options.motion.empty()) clips.front().name = fs::path(options.motion).stem().string();
+  }
   const std::string slides = allow_slides(clips, colliders);
   Export made = format.of_source != nullptr ? format.of_source(colliders, source) : format.of_colliders(colliders);
   if (!slides.empty()) made.notes.push_back(slides);

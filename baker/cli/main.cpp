@@ -264,8 +264,12 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember(export_formats()));
   add_output(*export_command, "-o,--output", exported.output, "File to write; what belongs to it is written beside it")
       ->required();
-  add_name(*export_command, "--source", exported.source,
-           "The mesh it was baked from: to measure the fit on its clips; vrm, khr and omi write into it");
+  CLI::Option* exported_source =
+      add_name(*export_command, "--source", exported.source,
+               "The mesh it was baked from: to measure the fit on its clips; vrm, khr and omi write into it");
+  add_name(*export_command, "--motion", exported.motion,
+           "Recording (BVH, FBX, Collada, glTF, AMASS) to carry over, in place of the source's own clips")
+      ->needs(exported_source);
   add_volumes(*export_command, exported.volumes, exported.at_most,
               "Their shape (default: the best that the format holds)");
   add_name(*export_command, "--filter", exported.filter, "What filter wrote: pairs that need no test are ignored");

@@ -70,7 +70,8 @@ std::string numbers(const Vec3& v) { return number(v.x()) + number(v.y()) + numb
 
 std::vector<PosedClip> posed_clips(const AnimatedAsset& animated, const Colliders& colliders) {
   std::vector<PosedClip> out;
-  if (animated.clips().empty() || animated.clips()[0].clip == nullptr) return out;
+  const bool is_at_rest = animated.clips()[0].clip == nullptr && animated.frame_count() == 1;
+  if (is_at_rest) return out;
   if (!moved_by_bones(animated.asset(), animated.deformation(0))) return out;
   for (const ClipFrames& clip : animated.clips()) {
     out.push_back({clip.name, {}, {}});

@@ -31,6 +31,7 @@ struct Nearest {
   using CountType = std::size_t;
   std::size_t size() const { return 1; }
   bool full() const { return true; }
+  void sort() const {}  // nanoflann 1.7 asks for it
   double worstDist() const { return squared; }
   bool addPoint(double to, std::uint32_t point) {
     if (to < squared) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "baker/truth/collider_alarms.h"
 
-// GCC 12 sees a use of freed memory in CGAL's counted transforms.
+// GCC 12 sees a use of freed memory in CGAL's counted transforms, GCC 14 a copy out of bounds in its polygon soups.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wuse-after-free"
+#pragma GCC diagnostic ignored "-Warray-bounds"
+#pragma GCC diagnostic ignored "-Wstringop-overflow"
 #endif
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

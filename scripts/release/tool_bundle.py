@@ -18,19 +18,21 @@ from check_wheel import ALLOWED
 
 ROOT = Path(__file__).resolve().parents[2]
 BUILD = ROOT / "build" / "release"
+OWN = ROOT / "build" / "release-stage" / "libraries"  # what scripts/release/libraries compiles in place of Debian's
 PAGES = ("viewer.html", "report_index.html", "report_clip.html", "report_score.html")
 
 
 def libraries(program):
     """The shared libraries that a program loads here and that manylinux does not allow to expect: {name: path}."""
-    listed = subprocess.check_output(["ldd", program], text=True)
+    listed = subprocess.check_output(["ldd", program], text=True, env={**os.environ, "LD_LIBRARY_PATH": str(OWN)})
     found = dict(re.findall(r"^\s+(\S+) => (\S+) \(", listed, re.M))
     return {name: Path(path) for name, path in found.items() if name not in ALLOWED}
 
 
 def package_of(library):
-    """The Debian package that holds a file of this machine."""
-    for path in (library.resolve(), Path("/lib", *library.resolve().parts[3:])):
+    """The Debian package that holds a library of this machine, or whose source OWN has compiled."""
+    installed = Path("/usr/lib/x86_64-linux-gnu", library.name).resolve()
+    for path in (installed, Path("/lib", *installed.parts[3:])):
         done = subprocess.run(["dpkg", "-S", path], capture_output=True, text=True, check=False)
         if done.returncode == 0:
             return done.stdout.split(":")[0]
@@ -48,6 +50,7 @@ def place(source, target, library_folder):
 
 def bundle(folder, library_folder):
     program = BUILD / "bin" / "spherechain"
+    subprocess.run([ROOT / "scripts" / "release" / "libraries" / "assimp.sh", OWN], check=True)
     place(program, folder / "bin" / "spherechain", library_folder)
     (folder / "share" / "spherechain").mkdir(parents=True, exist_ok=True)
     for page in PAGES:

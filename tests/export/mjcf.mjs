@@ -64,9 +64,10 @@ function freed(text) {
   return out.join('\n')
 }
 
-// The joint angles that the export writes beside it, for each clip of a character that has some.
-const walker = r.withClips(one), tables = walker.tables('mjcf', 'clips.xml')
-if (tables.length > 0) {
+// The joint angles that the export writes beside it: for each clip of a character that has some, and for a recording.
+for (const walker of new Set([r.withClips(one), one])) {
+  const tables = walker.tables('mjcf', 'clips.xml')
+  if (tables.length === 0) continue
   const { model, data } = load(fs.readFileSync('clips.xml', 'utf8'))
   const bodyIds = walker.identifiers.map(name => mujoco.mj_name2id(model, BODY, name)), address = name => {
     const free = /^(.*)_([xyz]|q[wxyz])$/.exec(name), slide = mujoco.mj_name2id(model, JOINT, name)

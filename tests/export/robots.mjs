@@ -1,6 +1,7 @@
 // Common code for checking the robotics formats: a character, its poses, and turning them upright.
 import { execFileSync } from 'node:child_process'
 import fs from 'node:fs'
+import path from 'node:path'
 
 const models = '/usr/share/assimp/models'
 
@@ -26,19 +27,22 @@ export function character(shapeOfFormat, poses, args = process.argv.slice(2)) {
     for (const line of out.split('\n')) if (line.startsWith('note:')) console.log(line)
     return fs.readFileSync(file, 'utf8')
   }
-  // The CSVs that an export writes of the source's clips.
+  const recording = one.motion ? path.basename(one.motion).replace(/\.[^.]*$/, '') : ''
+  // The CSVs that an export writes of the source's clips, or of the recording.
   one.tables = (format, file) => {
     const stem = file.replace(/\.[^.]*$/, '.')
     for (const old of fs.readdirSync('.')) if (old.startsWith(stem)) fs.rmSync(old)
-    run(tool, 'export', one.asset, '--to', format, '-o', file, '--source', one.source, '--volumes', one.shape)
+    run(tool, 'export', one.asset, '--to', format, '-o', file, '--source', one.source, '--volumes', one.shape,
+      ...(one.motion ? ['--motion', one.motion] : []))
     const clips = [...new Set(one.all_frames().map(pose => pose.clip))]
     return fs.readdirSync('.').filter(name => name.startsWith(stem) && name.endsWith(`.${format}.csv`)).map(name => {
       const [header, ...lines] = fs.readFileSync(name, 'utf8').trim().split('\n')
-      const clip = clips.find(clip => clip.replace(/[^A-Za-z0-9-]/g, '_') === name.slice(stem.length, -5 - format.length))
+      const clip = clips.find(clip => (clip || recording).replace(/[^A-Za-z0-9-]/g, '_') === name.slice(stem.length, -5 - format.length))
       return { clip, columns: header.split(',').slice(1), rows: lines.map(line => line.split(',').map(Number)) }
     })
   }
-  one.all_frames = () => one.every ??= JSON.parse(run(posedColliders, one.asset, one.source, one.shape, one.atMost, '0')).poses
+  one.all_frames = () => one.every ??= JSON.parse(run(posedColliders, one.asset, one.source, one.shape, one.atMost, '0',
+    ...(one.motion ? [one.motion] : []))).poses
   one.json = JSON.parse(one.export('capsules.json', 'robot.capsules.json'))
   one.identifiers = one.json.bodies.map(body => body.part.replace(/[^A-Za-z0-9]/g, '_'))
   // Rows: where forward, left and up of the character go to X, Y and Z.

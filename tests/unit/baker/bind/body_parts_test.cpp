@@ -25,7 +25,7 @@ Names part_names(const BodyParts& parts) {
   return names;
 }
 
-const BodyPart& part_called(const BodyParts& parts, const std::string& name) {
+const BodyPart& part_called(const BodyParts& parts, std::string_view name) {
   const auto found = std::find_if(parts.parts.begin(), parts.parts.end(), [&](auto& p) { return p.name == name; });
   REQUIRE_MESSAGE(found != parts.parts.end(), name);
   return *found;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
+#include <string_view>
 
 #include "baker/check/rules.h"
 #include "baker/filter/confidence.h"
@@ -82,8 +83,8 @@ struct Doll {
   fs::path source, asset;
 };
 
-const FilteredPair& pair_of(const PartFilter& filter, const std::string& a, const std::string& b) {
-  const auto number = [&](const std::string& name) {
+const FilteredPair& pair_of(const PartFilter& filter, std::string_view a, std::string_view b) {
+  const auto number = [&](std::string_view name) {
     const auto found = std::find(filter.parts.begin(), filter.parts.end(), name);
     REQUIRE_MESSAGE(found != filter.parts.end(), name);
     return static_cast<std::size_t>(found - filter.parts.begin());

@@ -119,7 +119,7 @@ void check_roles(const NamedRig& rig, BodyKind kind) {
   }
 }
 
-const RoleLimb& limb_called(const Roles& roles, const std::string& name) {
+const RoleLimb& limb_called(const Roles& roles, std::string_view name) {
   const auto found =
       std::find_if(roles.limbs.begin(), roles.limbs.end(), [&](const RoleLimb& l) { return l.name == name; });
   REQUIRE(found != roles.limbs.end());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "named_rig.h"
@@ -13,7 +14,7 @@ spherechain::baker::Roles roles_of(const NamedRig& rig);
 void check_roles(const NamedRig& rig, spherechain::baker::BodyKind kind = spherechain::baker::BodyKind::kBiped);
 
 // REQUIREs that there is one.
-const spherechain::baker::RoleLimb& limb_called(const spherechain::baker::Roles& roles, const std::string& name);
+const spherechain::baker::RoleLimb& limb_called(const spherechain::baker::Roles& roles, std::string_view name);
 
 using Names = std::vector<std::string>;
 Names names_of(const NamedRig& rig, const std::vector<int>& nodes);
