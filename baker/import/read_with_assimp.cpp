@@ -26,6 +26,7 @@
 #include "baker/import/assimp_scene.h"
 #include "baker/import/choose_meshes.h"
 #include "baker/import/collada_names.h"
+#include "baker/import/fbx_binds.h"
 #include "baker/import/fbx_curves.h"
 #include "baker/import/fbx_names.h"
 #include "baker/import/import.h"
@@ -210,6 +211,7 @@ struct ReadFile {
     scene = read_by_ending_or_content(importer, *files, name);
     if (scene != nullptr) {
       auto& changed = const_cast<aiScene&>(*scene);  // the importer's own, which nobody else reads
+      keep_space_and_binds(changed, fbx);
       complete_curves(changed, fbx);
       separate_shared_weights(changed);
     }
