@@ -256,7 +256,10 @@ void check_extensions(const json& root, const std::string& file) {
   }
 }
 
-// Leaves of `extras` the names of morph targets, of extensions their names.
+// The extensions whose contents tinygltf asks for, and nobody here.
+constexpr const char* kAskedFor[] = {"KHR_lights_punctual", "KHR_audio", "MSFT_lod"};
+
+// Leaves of `extras` the names of morph targets, of other extensions their names.
 void strip(json& value) {
   if (value.is_object()) {
     if (const auto extras = value.find("extras"); extras != value.end()) {
@@ -269,6 +272,7 @@ void strip(json& value) {
     if (const auto extensions = value.find("extensions"); extensions != value.end()) {
       if (!extensions->is_object()) *extensions = json::object();
       for (json& content : *extensions) content = json::object();
+      for (const char* name : kAskedFor) extensions->erase(name);
     }
   }
   if (value.is_structured()) {

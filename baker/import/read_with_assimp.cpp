@@ -154,9 +154,14 @@ bool recognises(Assimp::BaseImporter& format, const std::string& name, OwnFiles&
   }
 }
 
-// Assimp goes by a file's ending. Where that leads to nothing, each format that recognises the content has its turn.
-const aiScene* read_by_ending_or_content(Assimp::Importer& importer, OwnFiles& files, const std::string& name) {
+// Assimp goes by a file's ending. Where that leads to nothing, each format that recognises the content has its turn;
+// assimp 5.4 does not recognise FBX.
+const aiScene* read_by_ending_or_content(Assimp::Importer& importer, OwnFiles& files, const std::string& name,
+                                         bool is_fbx = false) {
   if (const aiScene* scene = importer.ReadFile(name, 0); has_content(scene)) return scene;
+  if (is_fbx) {
+    if (const aiScene* scene = importer.ReadFile(files.alias("fbx"), 0); has_content(scene)) return scene;
+  }
   for (std::size_t f = 0; f < importer.GetImporterCount(); ++f) {
     if (!recognises(*importer.GetImporter(f), files.alias(""), files)) continue;
     std::istringstream endings(importer.GetImporterInfo(f)->mFileExtensions);
@@ -208,7 +213,7 @@ struct ReadFile {
       names = make_names_unique(bytes, fbx);
       files->replace_content(std::move(bytes));
     }
-    scene = read_by_ending_or_content(importer, *files, name);
+    scene = read_by_ending_or_content(importer, *files, name, fbx.tree.is_binary || !fbx.objects.empty());
     if (scene != nullptr) {
       auto& changed = const_cast<aiScene&>(*scene);  // the importer's own, which nobody else reads
       keep_space_and_binds(changed, fbx);

@@ -15,6 +15,10 @@ constexpr double kStep = 0.0025;  // between sections
 constexpr double kDirectionWindow =
     0.06;  // a section stands across the last part of the line: longer than a joint's crease
 
+// A tail whose sections widen inwards by this much of the way, over their own radius, has come into the trunk: there
+// all rays grow alike, and none escapes.
+constexpr double kFlare = 0.5;
+
 // A ray this many times the median's length left the section through a gap: a limb's longest radius stays under 1.7
 // times the median.
 constexpr double kEscaped = 2.0;
@@ -41,6 +45,12 @@ struct Section {
   Vec3 center;
   double mean, longest;
 };
+
+bool flares(const std::vector<Section>& inwards, const Section& next) {
+  const auto before = std::find_if(inwards.rbegin(), inwards.rend(),
+                                   [&](const Section& s) { return (next.center - s.center).norm() >= s.mean; });
+  return before != inwards.rend() && next.mean - before->mean > kFlare * (next.center - before->center).norm();
+}
 
 class March {
  public:
@@ -77,7 +87,7 @@ class March {
                                         [&](const Section& s) { return (last - s.center).norm() >= window_; });
       if (earlier != sections.rend()) direction = (last - earlier->center).normalized();
       const auto next = section(last + length * direction, direction);
-      if (next && !stop(next->center)) {
+      if (next && !stop(*next)) {
         sections.push_back(*next);
       } else {
         length *= 0.5;
@@ -150,11 +160,14 @@ Attempt<LimbTrace> trace_limb(const SurfaceQuery& surface, const Polyline& branc
   if (!start) return Reason{"the " + limb + " has no section of its own: it merges with the torso"};
 
   // Out to hand or foot, then in from there, so that both directions follow a line of sections.
-  const auto never = [](const Vec3&) { return false; };
+  const auto never = [](const Section&) { return false; };
   std::vector<Section> sections{*start};
   march.run(sections, outward, branch.length(), never);
   std::reverse(sections.begin(), sections.end());
-  march.run(sections, -outward, branch.length(), [&](const Vec3& p) { return (p - branch.at(0)).norm() < ball; });
+  const bool is_tail = end == LimbEnd::kTip && ball > start->mean;  // and not a body that is one tube
+  march.run(sections, -outward, branch.length(), [&](const Section& next) {
+    return (next.center - branch.at(0)).norm() < ball || (is_tail && flares(sections, next));
+  });
   std::reverse(sections.begin(), sections.end());
 
   LimbTrace trace;

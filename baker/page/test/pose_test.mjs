@@ -102,8 +102,9 @@ test('a frame is taken over as it is, and given back', async () => {
   if (hasRuntime) {
     await page.waitForFunction(() => spherechainViewer.posing.isLive());
     const same = await shown(page);
-    assert.deepEqual(same.map(({ name, pairs }) => [name, pairs]), recorded.map(({ name, pairs }) => [name, pairs]));
-    same.forEach(({ depth }, i) => assert.ok(Math.abs(depth - recorded[i].depth) < 0.01 * depth + 0.01));
+    assert.deepEqual(same.map(({ name }) => name), recorded.map(({ name }) => name));
+    // Where triangles only just touch, rounding decides.
+    same.forEach(({ depth, pairs }, i) => assert.ok(Math.abs(pairs - recorded[i].pairs) <= 1 && Math.abs(depth - recorded[i].depth) < 0.01 * depth + 0.01));
   }
   await drawn(page);
   const taken = await poseOf(page);

@@ -27,7 +27,7 @@ int mesh_of(Glb& glb, const Shape& shape, double x, double y) {
   return static_cast<int>(glb.json["meshes"].size()) - 1;
 }
 
-std::string wall_and_arm(const std::vector<double>& degrees) {
+std::string wall_and_arm(const std::vector<double>& degrees, int clips) {
   Glb glb;
   const int wall = mesh_of(glb, box(0.5, 1, 1), 0, 0), arm = mesh_of(glb, box(0.1, 0.4, 0.1), 0, -0.4);
   const int far = mesh_of(glb, box(0.1, 0.1, 0.1), 2, 0);  // between the two: neighbours would fold
@@ -37,21 +37,23 @@ std::string wall_and_arm(const std::vector<double>& degrees) {
                         {"mesh", arm},
                         {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}},
                         {"extras", {{"mine", 7}}}}};
-  std::vector<float> times, rotations, places;
-  for (std::size_t f = 0; f < degrees.size(); ++f) {
-    const double half = -degrees[f] * std::numbers::pi / 360;
-    times.push_back(static_cast<float>(f) / 30);
-    rotations.insert(rotations.end(), {0, 0, static_cast<float>(std::sin(half)), static_cast<float>(std::cos(half))});
-    places.insert(places.end(), {static_cast<float>(0.6 + kMargin), 0.5F, 0});
+  for (int c = 0; c < clips; ++c) {
+    std::vector<float> times, rotations, places;
+    for (std::size_t f = 0; f < degrees.size(); ++f) {
+      const double half = -(degrees[f] + c) * std::numbers::pi / 360;
+      times.push_back(static_cast<float>(f) / 30);
+      rotations.insert(rotations.end(), {0, 0, static_cast<float>(std::sin(half)), static_cast<float>(std::cos(half))});
+      places.insert(places.end(), {static_cast<float>(0.6 + kMargin), 0.5F, 0});
+    }
+    const int input = glb.accessor(times, "SCALAR");
+    glb.json["animations"].push_back({{"name", "swing"},
+                                      {"samplers",
+                                       {{{"input", input}, {"output", glb.accessor(rotations, "VEC4")}},
+                                        {{"input", input}, {"output", glb.accessor(places, "VEC3")}}}},
+                                      {"channels",
+                                       {{{"sampler", 0}, {"target", {{"node", 2}, {"path", "rotation"}}}},
+                                        {{"sampler", 1}, {"target", {{"node", 1}, {"path", "translation"}}}}}}});
   }
-  const int input = glb.accessor(times, "SCALAR");
-  glb.json["animations"] = {{{"name", "swing"},
-                             {"samplers",
-                              {{{"input", input}, {"output", glb.accessor(rotations, "VEC4")}},
-                               {{"input", input}, {"output", glb.accessor(places, "VEC3")}}}},
-                             {"channels",
-                              {{{"sampler", 0}, {"target", {{"node", 2}, {"path", "rotation"}}}},
-                               {{"sampler", 1}, {"target", {{"node", 1}, {"path", "translation"}}}}}}}};
   return glb.bytes();
 }
 
