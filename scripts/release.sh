@@ -46,7 +46,7 @@ step() {
   "$@" >"$logs/$name.log" 2>&1 </dev/null || code=$?
   result=done
   if [[ $code -eq 77 ]]; then
-    result=$(grep '^skipped: ' "$logs/$name.log" | tail -1)
+    result=$(grep '^skipped: ' "$logs/$name.log" | tail -1 || echo "skipped: it does not say why")
   elif [[ $code -ne 0 ]]; then
     result=failed failed=1
   fi
