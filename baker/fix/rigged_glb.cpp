@@ -74,6 +74,18 @@ class Rigged {
       }
       nodes.push_back(std::move(node));
     }
+    add_ends();
+  }
+
+  // Where the last bones end. Without these nodes, hands and feet of a recording would turn from another direction.
+  void add_ends() {
+    ordered_json& nodes = glb_.json["nodes"];
+    for (std::size_t j = 0; j < baked_.joints.size(); ++j) {
+      const Joint& joint = baked_.joints[j];
+      if (nodes[first_ + j].contains("children")) continue;
+      nodes[first_ + j]["children"] = {nodes.size()};
+      nodes.push_back({{"name", joint.name + "_end"}, {"translation", list_of(joint.tail - joint.position)}});
+    }
   }
 
   void add_skin(std::size_t mesh) {

@@ -161,10 +161,17 @@ TEST_CASE("fix: a character without bones is mended on its automatic rig, which 
   for (int line = 0; line < 50; ++line) end = whole.find('\n', end) + 1;
   const auto take = folder.write("take.bvh", whole.substr(0, header) + "Frames: 48" +
                                                  whole.substr(header + stated.size(), end - header - stated.size()));
-  const tool::Run run =
-      tool::run("fix " + human + " --motion " + take.string() + " -o " + folder.path.string() + "/out.glb");
+  const std::string in = folder.path.string() + "/", of_take = human + " --motion " + take.string();
+  const tool::Run run = tool::run("fix " + of_take + " -o " + in + "out.glb --report " + in + "fixed");
   CHECK_MESSAGE(run.code == 0, run.error);
   CHECK(run.out.find("take: 1 event, 1 cleared") != std::string::npos);
+  // The GLB's joints carry the recording as the automatic rig does: hands lie where `check` sees them.
+  tool::run("check " + of_take + " -o " + in + "checked --json " + in + "check.json");
+  const auto deepest = [&](const char* file, const char* key) {
+    return json::parse(tool::contents(in + file))["clips"][0]["events"][0][key].get<double>();
+  };
+  CHECK(deepest("fixed/fix.json", "depth_mm_before") ==
+        doctest::Approx(deepest("check.json", "depth_mm")).epsilon(0.01));
   const Character before = import_character(human), after = import_character(folder.path / "out.glb");
   CHECK(after.source_triangles == before.source_triangles);
   CHECK(after.rig.bones.size() == 19);
