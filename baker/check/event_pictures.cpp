@@ -4,6 +4,8 @@
 #include <map>
 #include <tuple>
 
+#include "baker/check/tickets.h"
+
 namespace spherechain::baker {
 
 std::vector<std::string> draw_events(const AnimatedAsset& animated, const ClipFrames& clip, ClipEvents& found,
@@ -25,10 +27,14 @@ std::vector<std::string> draw_events(const AnimatedAsset& animated, const ClipFr
   };
   picture.pose(animated.positions(animated.deformation(clip.first)));
   out.push_back(picture.png(nullptr, picture.forward()));
-  std::map<std::tuple<std::string, std::string, PenetrationClass>, const Event*> deepest;
+  struct Shown {
+    const Event *deepest = nullptr, *worst = nullptr;
+  };
+  std::map<std::tuple<std::string, std::string, PenetrationClass>, Shown> shown;
   for (const Event& event : found.events) {
-    const Event*& known = deepest[{event.parts[0], event.parts[1], event.kind}];
-    if (known == nullptr || event.depth_mm > known->depth_mm) known = &event;
+    auto& [deepest, worst] = shown[{event.parts[0], event.parts[1], event.kind}];
+    if (deepest == nullptr || event.depth_mm > deepest->depth_mm) deepest = &event;
+    if (worst == nullptr || severity(event, clip.fps) > severity(*worst, clip.fps)) worst = &event;
   }
   for (std::size_t i = 0; i < found.events.size(); ++i) {
     Event& event = found.events[i];
@@ -39,7 +45,8 @@ std::vector<std::string> draw_events(const AnimatedAsset& animated, const ClipFr
     const bool is_gone = contacts.empty();
     const Patches patches = is_gone ? Patches{} : patches_of(event, contacts);
     event.eye = is_gone ? picture.forward() : picture.find_eye(patches);
-    if (deepest[{event.parts[0], event.parts[1], event.kind}] != &event) continue;
+    const Shown& of_parts = shown[{event.parts[0], event.parts[1], event.kind}];
+    if (of_parts.deepest != &event && of_parts.worst != &event) continue;
     event.picture = static_cast<int>(out.size());
     out.push_back(picture.png(is_gone ? nullptr : &patches, *event.eye));
   }

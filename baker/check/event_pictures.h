@@ -10,9 +10,9 @@
 
 namespace spherechain::baker {
 
-// Draws a clip's first frame, then the deepest event of each two parts and class that is a fault: PNGs. Rules excuse a
-// fault by its parts, its class and its depth, so the worst event that they leave has a picture. Sets the eye of each
-// fault, and the number of its picture.
+// Draws a clip's first frame, then the most severe and the deepest event of each two parts and class that is a fault:
+// PNGs. A ticket shows the most severe; rules excuse a fault by its parts, its class and its depth, and leave the
+// deepest. Sets the eye of each fault, and the number of its picture.
 std::vector<std::string> draw_events(const AnimatedAsset& animated, const ClipFrames& clip, ClipEvents& found,
                                      Picture& picture);
 

@@ -86,7 +86,7 @@ bool is_on_page(const EvaluatedEvent& evaluated) {
   return is_fault(evaluated.event.kind) || evaluated.state == EventState::kResolved;
 }
 
-// The ticket's worst event that has a picture: each two parts have one of their deepest.
+// The ticket's worst event that has a picture: each two parts have one of their most severe, and one of their deepest.
 Ticket::Shown pictured(const Ticket& ticket, const Verdict& verdict) {
   return *std::find_if(ticket.events.begin(), ticket.events.end() - 1, [&](const Ticket::Shown& shown) {
     return verdict.clips[shown.clip].events[shown.event].event.picture > 0;
