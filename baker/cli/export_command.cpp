@@ -168,7 +168,7 @@ ExitCode run_export(const ExportOptions& options) {
     }
     if (!options.motion.empty()) clips.front().name = fs::path(options.motion).stem().string();
   }
-  const std::string slides = allow_slides(clips, colliders);
+  const std::string slides = allow_motion(clips, colliders);
   Export made = format.of_source != nullptr ? format.of_source(colliders, source) : format.of_colliders(colliders);
   if (!slides.empty()) made.notes.push_back(slides);
   if (format.of_clips != nullptr) {

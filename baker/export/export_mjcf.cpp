@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "baker/export/robot.h"
 
 // MuJoCo's XML. A body a part, in the frame of the one that it hangs on; quaternions w x y z.
 namespace spherechain::baker {
 namespace {
+
+// Radians that a ball joint turns at most, where no clip turns it as far; how far it turns beyond the clips, else.
+constexpr double kRange = 2.6, kBeyondClips = 0.1;
 
 std::string mjcf_quaternion(const Eigen::Quaterniond& q) {
   return fmt::format("{} {} {} {}", xml_number(q.w()), xml_number(q.x()), xml_number(q.y()), xml_number(q.z()));
@@ -59,7 +63,10 @@ struct MjcfWriter {
                       axis, xml_numbers(Vec3::Unit(number)), xml_number(-one.slide), xml_number(one.slide), spring);
     }
     const char* joint = one.parent < 0 ? "<freejoint name=\"" : "<joint type=\"ball\" name=\"";
-    out += indent + "  " + joint + names[i] + "\"/>\n";
+    const double reach = std::min(one.turn + kBeyondClips, std::numbers::pi);
+    const std::string range =
+        one.parent >= 0 && reach > kRange ? fmt::format(" range=\"0 {}\"", xml_number(reach)) : "";
+    out += fmt::format("{}  {}{}\"{}/>\n", indent, joint, names[i], range);
     const SolidMass& mass = masses[i];
     const Eigen::Matrix3d& inertia = mass.inertia;
     out += fmt::format("{}  <inertial mass=\"{}\" pos=\"{}\" fullinertia=\"{} {}\"/>\n", indent,
@@ -115,15 +122,15 @@ Export export_mjcf(const Colliders& given) {
       "  <option integrator=\"implicitfast\"/>\n"
       "  <statistic center=\"{}\" extent=\"{}\"/>\n"
       "  <default>\n"
-      "    <joint damping=\"{}\" armature=\"{}\" range=\"0 2.6\"/>\n"
+      "    <joint damping=\"{}\" armature=\"{}\" range=\"0 {}\"/>\n"
       "    <geom rgba=\"0.85 0.65 0.45 1\"/>\n"
       "  </default>\n"
       "  <worldbody>\n"
       "    <light pos=\"{}\" dir=\"0 0 -1\" directional=\"true\"/>\n"
       "    <geom name=\"floor\" type=\"plane\" size=\"0 0 1\" pos=\"0 0 {}\" rgba=\"0.4 0.45 0.5 1\"/>\n",
       robot_name(colliders), xml_numbers(bounds.center()), xml_number(height),
-      xml_number(0.002 * inertia * std::sqrt(9.81 / height)), xml_number(2e-5 * inertia), xml_numbers(above),
-      xml_number(bounds.min().z()));
+      xml_number(0.002 * inertia * std::sqrt(9.81 / height)), xml_number(2e-5 * inertia), xml_number(kRange),
+      xml_numbers(above), xml_number(bounds.min().z()));
   std::size_t roots = 0;
   for (std::size_t i = 0; i < colliders.bodies.size(); ++i) {
     if (colliders.bodies[i].parent >= 0) continue;

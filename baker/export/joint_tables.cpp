@@ -83,7 +83,7 @@ std::vector<PosedClip> posed_clips(const AnimatedAsset& animated, const Collider
   return out;
 }
 
-std::string allow_slides(const std::vector<PosedClip>& clips, Colliders& colliders) {
+std::string allow_motion(const std::vector<PosedClip>& clips, Colliders& colliders) {
   constexpr double kStays = 3e-5;  // of the height: a row of joints adds up to less than a millimetre on a human
   std::vector<std::string> names;
   for (std::size_t b = 0; b < colliders.bodies.size(); ++b) {
@@ -91,7 +91,9 @@ std::string allow_slides(const std::vector<PosedClip>& clips, Colliders& collide
     double farthest = 0;
     for (const PosedClip& clip : clips) {
       for (const auto& bodies : clip.frames) {
-        farthest = std::max(farthest, placed(colliders, bodies, b).shift.norm());
+        const Placed at = placed(colliders, bodies, b);
+        farthest = std::max(farthest, at.shift.norm());
+        colliders.bodies[b].turn = std::max(colliders.bodies[b].turn, Eigen::AngleAxisd(at.turn).angle());
       }
     }
     if (farthest <= kStays * colliders.height) continue;

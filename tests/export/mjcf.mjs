@@ -75,13 +75,15 @@ for (const walker of new Set([r.withClips(one), one])) {
     const id = mujoco.mj_name2id(model, JOINT, free[1])
     return model.jnt_qposadr[id] + (free[2].length === 1 ? 'xyz'.indexOf(free[2]) : 'wxyz'.indexOf(free[2][1]) + (model.jnt_type[id] === 0 ? 3 : 0))
   }
-  let farthest = 0, widest = 0, frames = 0
+  const balls = [...model.jnt_type].flatMap((type, j) => (type === 1 ? [j] : []))
+  let farthest = 0, widest = 0, frames = 0, beyond = 0
   for (const { clip, columns, rows } of tables) {
     const at = columns.map(address), played = walker.all_frames().filter(pose => pose.clip === clip)
     check(rows.length === played.length, `the table of ${clip} has a row for each frame`)
     rows.forEach(([seconds, ...values], f) => {
       check(Math.abs(seconds - played[f].seconds) < 1e-4, 'rows have the times of frames')
       values.forEach((value, k) => { data.qpos[at[k]] = value })
+      for (const j of balls) beyond += 2 * Math.acos(Math.min(1, Math.abs(data.qpos[model.jnt_qposadr[j]]))) > model.jnt_range[2 * j + 1] ? 1 : 0
       placed({ model, data }, bodyIds).forEach((theirs, i) => {
         const { position, rotation } = played[f].bodies[i]
         const ours = { position: r.turn(walker.upright, position), rotation: r.multiply(walker.upright, rotation) }
@@ -93,6 +95,7 @@ for (const walker of new Set([r.withClips(one), one])) {
   }
   console.log(`joint angles of ${tables.length} clips, ${frames} frames: at worst ${(1000 * farthest).toFixed(3)} mm and ` +
     `${(widest * 180 / Math.PI).toFixed(4)} degrees from the clip`)
+  check(beyond === 0, 'joints turn as far as the clips turn them')
   // The figure falls: what slides in its parent is held by a spring.
   mujoco.mj_resetData(model, data)
   const height = walker.posed.height, seconds = 2 * Math.sqrt(Math.max(1, height / 1.7))

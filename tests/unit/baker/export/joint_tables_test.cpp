@@ -56,7 +56,7 @@ TEST_CASE("a URDF with the joint angles of a clip stands as the clip does, where
     }
   }
   for (const ColliderBody& body : figure.bodies) clips[1].frames[0].push_back(body.rest);
-  const std::string note = allow_slides(clips, figure);
+  const std::string note = allow_motion(clips, figure);
   CHECK(note.find("part 2 (") != note.npos);
   CHECK(note.find("part 1") == note.npos);
   const std::vector<ExportFile> files = urdf_joint_tables(figure, clips);
