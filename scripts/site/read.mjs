@@ -61,7 +61,8 @@ const desk = await open(1280, 'dark');
 await desk.goto(`${top}docs/how-we-know.html`);
 assert.ok(await desk.evaluate(() => [...document.querySelectorAll('.wide')].every(({ scrollWidth, clientWidth }) => scrollWidth <= clientWidth)), 'a table runs off');
 
-// The search: by words, by a key with an underscore, with a slip of the pen, from a page two folders down.
+// The search: by words, by a key with an underscore, with a slip of the pen, from a page two folders down. A word that is there finds
+// no similar words.
 await desk.goto(`${top}docs/cli/bake.html`);
 async function search(words, title) {
   await desk.keyboard.press('Escape');
@@ -74,6 +75,11 @@ async function search(words, title) {
 await search('detect_quantile', 'detect_quantile');
 await search('unity colliders', 'Colliders');
 await search('collizion response', 'Collision response');
+for (const word of ['severity', 'retarget']) {
+  await search(word, word);
+  const marked = await desk.locator('#results mark').allTextContents();
+  assert.deepEqual(marked.filter((text) => !text.toLowerCase().startsWith(word)), [], `found for ${word}`);
+}
 await search('exit codes', 'Exit codes');
 await desk.keyboard.press('Enter');
 await desk.waitForURL(/docs\/cli\/index\.html#exit-codes$/);

@@ -20,7 +20,7 @@ WALK, CHECKED = sys.argv[-2:]
 
 
 def enable():
-    bpy.ops.preferences.addon_enable(module="spherechain")
+    bpy.ops.preferences.addon_enable(module="spherechain_blender")
 
 
 def imported(fps=30):
@@ -84,7 +84,7 @@ def finds_what_the_tool_finds():
     assert all(name.startswith("sc: ") for _, name in markers if name != "jump"), markers
     armature.spherechain.active = 0
     assert scene.frame_current == armature.spherechain.events[0].worst
-    contacts = sys.modules["spherechain.drawing"].shown[armature.name]
+    contacts = sys.modules["spherechain_blender.drawing"].shown[armature.name]
     inside, faults, touches, depths = contacts.at(scene.frame_current)
     assert faults and len(depths) >= 2 and contacts.holds(armature, scene.frame_current)
     # The deepest points lie on the skin that Blender draws.
@@ -184,7 +184,7 @@ def says_what_is_wrong():
     bpy.context.view_layer.objects.active = bpy.data.objects["Cube"]
     refused(bpy.ops.spherechain.check, "Select a character")
     imported()
-    preferences = bpy.context.preferences.addons["spherechain"].preferences
+    preferences = bpy.context.preferences.addons["spherechain_blender"].preferences
     preferences.tool = "/nowhere/spherechain"
     refused(bpy.ops.spherechain.check, "/nowhere/spherechain is no program", "preferences")
     broken = os.path.join(bpy.app.tempdir, "tool")
@@ -198,8 +198,8 @@ def says_what_is_wrong():
 
 def can_be_cancelled():
     armature = imported()
-    runner = sys.modules["spherechain.tasks"].runner
-    tool = sys.modules["spherechain.results"].find_tool("")
+    runner = sys.modules["spherechain_blender.tasks"].runner
+    tool = sys.modules["spherechain_blender.results"].find_tool("")
     before = contents()
     runner.start("check", bpy.context, tool)
     while runner.step() and "check" not in running():
@@ -237,7 +237,7 @@ def mends_into_a_new_action():
     new = armature.animation_data.action
     assert new.name == old.name + " fixed" and old.use_fake_user, new.name
     assert curves_of(old) == before and curves_of(new) != before
-    glb, character = sys.modules["spherechain.glb"], sys.modules["spherechain.character"]
+    glb, character = sys.modules["spherechain_blender.glb"], sys.modules["spherechain_blender.character"]
     mended = max((os.path.join(folder, name) for folder, _, files in os.walk(bpy.app.tempdir) for name in files
                   if name == "mended.glb"), key=os.path.getmtime)
     played = character.Character(bpy.context)

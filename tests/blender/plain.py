@@ -10,11 +10,11 @@ import types
 import unittest
 from pathlib import Path
 
-package = types.ModuleType("spherechain")  # without its __init__.py, which needs Blender
+package = types.ModuleType("spherechain_blender")  # without its __init__.py, which needs Blender
 package.__path__ = [str(Path(__file__).resolve().parents[2] / "baker/blender")]
-sys.modules["spherechain"] = package
-from spherechain import results  # noqa: E402
-from spherechain.job import Job  # noqa: E402
+sys.modules["spherechain_blender"] = package
+from spherechain_blender import results  # noqa: E402
+from spherechain_blender.job import Job  # noqa: E402
 
 
 def written(folder, content):

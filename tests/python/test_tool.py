@@ -5,6 +5,7 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
@@ -66,6 +67,16 @@ class Tool(unittest.TestCase):
         for own, expected in zip(map(sorted, found), map(sorted, faults)):
             self.assertEqual([entry[:3] for entry in own], [entry[:3] for entry in expected])
             np.testing.assert_allclose([entry[3] for entry in own], [entry[3] for entry in expected], rtol=1e-6)
+
+    def test_runs_without_numpy(self):
+        def python(code):
+            hidden = f"import runpy, sys; sys.modules['numpy'] = None; {code}"
+            return subprocess.run([sys.executable, "-c", hidden, "--version"], text=True, capture_output=True)
+
+        done = python("runpy.run_module('spherechain', run_name='__main__', alter_sys=True)")
+        self.assertEqual((done.returncode, done.stdout.split()[:1]), (0, ["spherechain"]), done.stderr)
+        done = python("from spherechain import Model")
+        self.assertIn("spherechain.Model needs numpy: pip install numpy", done.stderr)
 
     def test_says_what_the_tool_says(self):
         for path, settings, text, code in (("nowhere.glb", {}, "^nowhere.glb: ", 3),
