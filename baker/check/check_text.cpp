@@ -68,6 +68,7 @@ std::string summary_text(const Summary& s, std::size_t tickets) {
   if (s.worse > 0) out += fmt::format(" ({} worse than before)", s.worse);
   if (s.accepted > 0) out += fmt::format(", {} accepted", s.accepted);
   if (s.resolved > 0) out += fmt::format(", {} resolved", s.resolved);
+  if (s.clips == 0) out += "; no clip was played (--motion brings recordings)";
   if (s.errors > 0) out += "; " + counted(s.errors, "row", "rows") + " could not be checked";
   std::string besides;
   const auto beside = [&](PenetrationClass kind, const char* one, const char* many) {

@@ -41,7 +41,7 @@ int separate_parts(MendState& state, int first) {
   int free_rounds = 0, round = first;
   for (; round < first + kRoundsMax && (state.goals.has_open_events() || step > kStillStep); ++round) {
     const Look look = look_in_round(state, round, round == first);
-    state.report(fmt::format("round {}: {:.1f} mm too deep", round + 1, look.residual * state.facts.mm));
+    state.report(fmt::format("round {}: {:.1f} mm too deep in all", round + 1, look.residual * state.facts.mm));
     const bool is_free = look.residual == 0;
     if (is_free && was_free && step < kStillStep && !has_deep_contacts(state, look.found)) break;
     if (is_free || free_rounds > 0) {
@@ -81,7 +81,7 @@ void open_windows_of_turns(MendState& state) {
 void settle(MendState& state) {
   for (int round = 0; round < kSettleRounds; ++round) {
     const double residual = separate_everywhere(state);
-    state.report(fmt::format("settling: {:.1f} mm too deep", residual * state.facts.mm));
+    state.report(fmt::format("settling: {:.1f} mm too deep in all", residual * state.facts.mm));
     if (residual == 0) return;
     gauss_newton_step(state, kSettleWeight, false);
   }
