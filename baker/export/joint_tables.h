@@ -21,8 +21,9 @@ struct PosedClip {
 // The clips that play. Empty where no bones move the asset.
 std::vector<PosedClip> posed_clips(const AnimatedAsset& animated, const Colliders& colliders);
 
-// Sets how far clips turn bodies in their parents, and lets bodies slide that the clips move in their parents: where a bone stretches or travels, or where bones without a
-// part of their own lie between two parts. The note names them; empty: there are none.
+// Sets how far clips turn bodies in their parents, and lets bodies slide that the clips move in their parents: where a
+// bone stretches or travels, or where bones without a part of their own lie between two parts. The note names them;
+// empty: there are none.
 std::string allow_motion(const std::vector<PosedClip>& clips, Colliders& colliders);
 
 // A CSV for each clip: `time` in seconds, then a column for each joint of the robot's file. A ball joint of MJCF has

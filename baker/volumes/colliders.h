@@ -25,7 +25,7 @@ struct ColliderBody {
       Eigen::AffineCompact3d::Identity();  // its frame -> the bone's own space, scale included
   int held_by = -1;  // the body whose volumes stand for it, too: that of a small part; -1: it has its own, or none
   std::vector<Volume> volumes;  // in its frame, metres
-  double turn = 0;   // radians that clips turn it in its parent at most, from the rest pose (allow_motion)
+  double turn = 0;              // radians that clips turn it in its parent at most, from the rest pose (allow_motion)
   double slide = 0;  // metres that clips move it in its parent at most, besides turning it (allow_motion); 0: it stays
 };
 
