@@ -13,6 +13,8 @@ import unittest
 import zlib
 from pathlib import Path
 
+from spherechain._mcp_tools import _pictures as pictures
+
 TOOL = os.environ.get("SPHERECHAIN_TOOL") or shutil.which("spherechain")
 # A base, a lower arm and an upper arm, which folds onto the base.
 ARM = """<robot name="arm">
@@ -117,17 +119,72 @@ class Server(unittest.TestCase):
         worst = found["tickets"][0]
         self.assertEqual((worst["character"], worst["clip"], worst["parts"]), ("arm.urdf", "fold.csv", ["upper", "base"]))
         play = self.call("play", character="arm.urdf", motion="fold.csv")
-        self.assertEqual([part["type"] for part in play["content"]], ["text", "image"])
+        caption = f"arm.urdf fold.csv, frame {worst['frame']}: upper in base, penetration, {worst['depth_mm']:.1f} mm"
+        for content in (result["content"], play["content"]):
+            self.assertEqual([part["type"] for part in content], ["text", "text", "image"])
+            self.assertEqual(content[1]["text"], caption)
         played = play["structuredContent"]["faults"][0]
         self.assertEqual((played["parts"], played["deepest_frame"]), (worst["parts"], worst["frame"]))
         self.assertAlmostEqual(played["depth_mm"], worst["depth_mm"], 1)
         self.assertTrue((self.root / found["report"] / "library.js").is_file())
-        picture = base64.b64decode(result["content"][1]["data"])
+        picture = base64.b64decode(result["content"][2]["data"])
         self.assertTrue(picture.startswith(b"\x89PNG\r\n\x1a\n") and len(zlib.decompress(picture_data(picture))) > 1000)
         self.refused("report: is there already", "check", library=["arm.urdf"], output="report")
         for folder in ("report", "."):
             self.refused("folder", "check", library=["arm.urdf"], output=folder, overwrite=True)
         self.assertFalse([name for name in os.listdir(self.root) if name.startswith(".")])
+
+    def test_names_what_a_picture_shows_and_what_it_could_not_check(self):
+        (self.root / "broken.glb").write_text("no mesh")
+        (self.root / "twice.csv").write_text("elbow\n" + "".join(f"{angle}\n" for angle in (0, 2.85, *[0] * 8, 2.9, *[0] * 8)))
+        (self.root / "still.csv").write_text("elbow\n0\n0\n")
+        result = self.call("check", library=["arm.urdf", "broken.glb"], motion="twice.csv")
+        found = result["structuredContent"]
+        self.assertEqual([(row["character"], row["clip"]) for row in found["not_checked"]], [("broken.glb", "")])
+        self.assertIn("broken.glb: not a mesh", found["not_checked"][0]["error"])
+        self.assertNotIn(str(self.root), found["not_checked"][0]["error"])
+        self.assertEqual(found["summary"]["penetrations"], 2)
+        self.assertIn("arm.urdf twice.csv, frame 10: upper in base", result["content"][1]["text"])
+        still = self.call("check", library=["arm.urdf", "broken.glb"], motion="still.csv")
+        self.assertEqual(still["content"][1]["text"], "arm.urdf still.csv, no fault: the first frame")
+        result = self.call("export", character="arm.urdf", motion="still.csv", to="mjcf", output="arm.xml")
+        self.assertEqual(result["structuredContent"]["files"], ["arm.still.mjcf.csv", "arm.xml"])
+
+    def test_a_caption_names_no_frame_that_is_not_certain(self):
+        events = [{"parts": ["a", "b"], "text": "a in b", "class": "penetration", "deepest": 9 * depth, "depth_mm": depth}
+                  for depth in (2, 3, 1)]
+        row = {"character": "man.glb", "clip": "walk", "data": "data/x", "picture": "data/x_2.png", "events": events}
+        tickets = [{"picture": "data/x_2.png", "events": [[0, 1]]}, {"picture": "data/x_1.png", "events": [[0, 0]]},
+                   {"picture": "data/x.png", "events": [[0, 2]]}]
+        (self.root / "data").mkdir()
+        for name in ("x", "x_1", "x_2"):
+            (self.root / f"data/{name}.png").write_bytes(b"")
+        (self.root / "library.js").write_text("spherechain.library = " + json.dumps({"tickets": tickets, "rows": [row]}))
+        captions = ["man.glb walk, frame 27: a in b, penetration, 3.0 mm", "man.glb walk: a in b, or another fault",
+                    "man.glb walk, the first frame: no fault is marked"]
+        self.assertEqual([caption for caption, _ in pictures(self.root)], captions)
+        self.assertEqual([caption for caption, _ in pictures(self.root, "walk")], captions[:1])
+        events[0]["depth_mm"] = 3
+        (self.root / "library.js").write_text(json.dumps({"tickets": tickets, "rows": [row]}))
+        self.assertEqual([caption for caption, _ in pictures(self.root, "walk")], captions[1:2])
+
+    def test_says_how_far_each_mended_event_changes_the_pose(self):
+        acting = {"from": 50, "to": 60, "verdict": "changes_pose", "moves_mm": {"upper": 80.0}, "step_percent": 0.1}
+        event = {"parts": ["upper", "base"], "from": 55, "to": 60, "outcome": "cleared", "acting": acting}
+        (self.root / "fix.json").write_text(json.dumps({"clips": [{"clip": "fold.csv", "events": [event]}]}))
+        mends = self.root / "mends"  # in place of fix, which mends no robot
+        mends.write_text(f"""#!/bin/sh
+            [ "$1" = fix ] || exec {TOOL} "$@"
+            cd {self.root}
+            while [ $# -gt 1 ]; do
+              case "$1" in -o) cp arm.urdf "$2" ;; --report) cp fix.json "$2" ;; esac
+              shift
+            done""")
+        mends.chmod(0o755)
+        self.start(mends)
+        result = self.call("fix", character="arm.urdf", motion="fold.csv", output="mended.urdf")
+        self.assertEqual(result["structuredContent"]["clips"][0]["events"][0]["acting"], acting)
+        self.assertIn("before: arm.urdf fold.csv, frame 58: upper in base", result["content"][1]["text"])
 
     def test_writes_files_below_its_root_alone_and_replaces_none_unasked(self):
         self.refused("outside", "export", character="../secret.glb", to="unity", output="x.json")

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from .mcp import Call
 
 _TICKETS_MAX, _PICTURES_MAX, _EVENTS_MAX = 20, 3, 40
-Result = Tuple[Dict[str, Any], List[str]]  # the structured content, and pictures: PNGs in base64
+Picture = Tuple[str, str]  # its caption, and a PNG in base64
+Result = Tuple[Dict[str, Any], List[Picture]]  # the structured content, and pictures
 
 
 class Refused(Exception):
@@ -140,18 +141,44 @@ def _motion(call: "Call", arguments: Dict[str, Any]) -> List[str]:
     return ["--motion", _input(call, arguments["motion"])] if "motion" in arguments else []
 
 
-def _pictures(folder: Path, clip: Optional[str] = None) -> List[str]:
+def _caption(row: Dict[str, Any], file: str, fault: Dict[str, Any], is_sure: bool) -> str:
+    """Says what a picture of a clip shows. Only the name of a picture of a fault ends in a number."""
+    name = f"{row['character']} {row['clip']}"
+    if re.search(r"_\d+\.png$", file) is None:
+        return f"{name}, the first frame: no fault is marked" if row["events"] else f"{name}, no fault: the first frame"
+    if not is_sure:
+        return f"{name}: {fault['text']}, or another fault"
+    return f"{name}, frame {fault['deepest']:g}: {fault['text']}, {fault['class']}, {fault['depth_mm']:.1f} mm"
+
+
+def _pictures(folder: Path, clip: Optional[str] = None) -> List[Picture]:
     """The pictures of a check's worst tickets, or of a clip; without a fault of the first frame."""
     text = (folder / "library.js").read_text(encoding="utf-8")
     report = json.loads(text[text.index("{"):text.rindex("}") + 1])
-    rows = [row for row in report["rows"] if clip is None or row["clip"] == clip]
-    files = [ticket["picture"] for ticket in report["tickets"]] if clip is None else []
-    files = files or [row["picture"] for row in rows]
-    known = [folder / file for file in dict.fromkeys(files) if (folder / file).is_file()]
-    return [base64.b64encode(file.read_bytes()).decode() for file in known[:_PICTURES_MAX]]
+    rows, captions = report["rows"], {}
+    for ticket in report["tickets"] if clip is None else []:
+        # The picture shows the worst fault of the ticket that is drawn. Of each two parts and class in a clip, the most severe
+        # and the deepest fault are drawn.
+        file, (c, e) = ticket["picture"], ticket["events"][0]
+        row = next(rows[other] for other, _ in ticket["events"] if file.startswith(rows[other]["data"]))
+        worst = rows[c]["events"][e]
+        alike = [(i, event) for i, event in enumerate(rows[c]["events"])
+                 if i != e and (event["parts"], event["class"]) == (worst["parts"], worst["class"])]
+        is_sure = (all([c, i] in ticket["events"] for i, _ in alike) or
+                   all(event["depth_mm"] < worst["depth_mm"] for _, event in alike))
+        captions.setdefault(file, _caption(row, file, worst, is_sure))
+    for row in rows if not captions else []:
+        if "picture" in row and clip in (None, row["clip"]):
+            faults = [event for event in row["events"] if event["class"] in FAULTS and "rule" not in event]
+            badness = [(FAULTS.index(event["class"]), event["depth_mm"]) for event in faults]
+            worst = faults[badness.index(max(badness))] if faults else {}
+            is_sure = badness.count(max(badness, default=())) == 1
+            captions.setdefault(row["picture"], _caption(row, row["picture"], worst, is_sure))
+    known = [file for file in captions if (folder / file).is_file()][:_PICTURES_MAX]
+    return [(captions[file], base64.b64encode((folder / file).read_bytes()).decode()) for file in known]
 
 
-def _pictures_of(call: "Call", character: str, *options: str, clip: Optional[str] = None) -> List[str]:
+def _pictures_of(call: "Call", character: str, *options: str, clip: Optional[str] = None) -> List[Picture]:
     """Checks a character, and returns the pictures of that check: none if the character has no clip."""
     with tempfile.TemporaryDirectory(prefix="spherechain-") as folder:
         call.run("check", character, "-o", folder, *options, fine=(LIBRARY_FAILS,))
@@ -167,11 +194,12 @@ def _check(call: "Call", arguments: Dict[str, Any]) -> Result:
             result = Path(other, "check.json")
             call.run("check", *library, *options, "-o", os.fspath(folder), "--json", os.fspath(result), fine=(LIBRARY_FAILS,))
             found = json.loads(result.read_text(encoding="utf-8"))
-        pictures = _pictures(folder)
         tickets = [{**{key: ticket[key] for key in ("title", "character", "parts", "severity", "state")}, **ticket["worst"]}
                    for ticket in found["tickets"][:_TICKETS_MAX]]
+        failed = [{"character": clip["character"], "clip": clip["clip"], "error": _without_paths(call, clip["error"])}
+                  for clip in found["clips"] if "error" in clip]
         return {"fails": found["summary"]["fails"], "summary": found["summary"], "tickets": tickets,
-                "notes": found["notes"], "report": None}, pictures
+                "not_checked": failed[:_EVENTS_MAX], "notes": found["notes"], "report": None}, _pictures(folder)
 
     if "output" not in arguments:
         with tempfile.TemporaryDirectory(prefix="spherechain-") as folder:
@@ -209,7 +237,8 @@ def _play(call: "Call", arguments: Dict[str, Any]) -> Result:
     structured = {"clips": list(clips.values()), "faults": worst, "text": done.out.split("\n\n")[0]}
     if arguments.get("respond") or not (motion or any(clips)):
         return structured, []
-    return structured, _pictures_of(call, character, *motion, f"--fps={fps}", clip=worst[0]["clip"] if worst else None)
+    shown = next(iter(worst or clips.values()), {}).get("clip")
+    return structured, _pictures_of(call, character, *motion, f"--fps={fps}", clip=shown)
 
 
 def _fix(call: "Call", arguments: Dict[str, Any]) -> Result:
@@ -218,14 +247,13 @@ def _fix(call: "Call", arguments: Dict[str, Any]) -> Result:
     with _output(call, arguments) as (output, written), tempfile.TemporaryDirectory(prefix="spherechain-") as report:
         done = call.run("fix", character, *motion, "-o", os.fspath(output), "--report", report, *options, fine=(FAULTS_LEFT,))
         found = json.loads(Path(report, "fix.json").read_text(encoding="utf-8"))
-        pictures = _pictures_of(call, character, *motion)[:1]
-        if output.suffix.lower() == ".bvh":
-            pictures += _pictures_of(call, character, "--motion", os.fspath(output))[:1]
-        else:
-            pictures += _pictures_of(call, os.fspath(output))[:1]
+        mended = (character, "--motion", os.fspath(output)) if output.suffix.lower() == ".bvh" else (os.fspath(output),)
+        pictures = [(f"{when}: {caption}", picture) for when, checked in (("before", (character, *motion)), ("after", mended))
+                    for caption, picture in _pictures_of(call, *checked)[:1]]
     clips = [{**{key: clip.get(key) for key in ("clip", "turn_degrees", "new_faults")},
               "events": [{key: event.get(key) for key in ("parts", "from", "to", "deepest", "depth_mm_before", "depth_mm_after",
-                                                          "turn_degrees", "outcome")} for event in clip["events"][:_EVENTS_MAX]]}
+                                                          "turn_degrees", "outcome", "acting")}
+                         for event in clip["events"][:_EVENTS_MAX]]}
              for clip in found["clips"]]
     return {"output": written[0], "is_clean": done.code == 0, "clips": clips}, pictures
 
@@ -246,11 +274,11 @@ def _mask(call: "Call", arguments: Dict[str, Any]) -> Result:
 
 
 def _export(call: "Call", arguments: Dict[str, Any]) -> Result:
-    character = _input(call, arguments["character"])
+    character, motion = _input(call, arguments["character"]), _motion(call, arguments)
     with _output(call, arguments) as (output, written), tempfile.TemporaryDirectory(prefix="spherechain-") as folder:
         asset = os.path.join(folder, "asset.sphc")
         call.run("bake", character, "-o", asset, fine=(TARGET_MISSED,))
-        done = call.run("export", asset, "--source", character, "--to", arguments["to"], "-o", os.fspath(output),
+        done = call.run("export", asset, "--source", character, *motion, "--to", arguments["to"], "-o", os.fspath(output),
                         *_options(arguments, volumes="--volumes", at_most="--at-most"))
     return {"files": written, "text": _without_paths(call, done.out)}, []
 
@@ -301,8 +329,8 @@ TOOLS = {tool.name: tool for tool in (
          {**_LIBRARY, **_MOTION, **_FPS, **_CONTINUOUS,
           "max_depth_mm": {**_NUMBER, "description": "up to this depth any fault is fine"},
           **_output_of("folder for a report to open in a browser")},
-         ("library",), {"fails": _BOOLEAN, "summary": _OBJECT, "tickets": _OBJECTS, "notes": {"type": "array"},
-                        "report": {"type": ["string", "null"]}}, _check, True),
+         ("library",), {"fails": _BOOLEAN, "summary": _OBJECT, "tickets": _OBJECTS, "not_checked": _OBJECTS,
+                        "notes": {"type": "array"}, "report": {"type": ["string", "null"]}}, _check, True),
     Tool("play", "Says which body parts penetrate in a motion, in which frames, how deep and which way out, with a picture "
          "of the worst.",
          {**_CHARACTER, **_MOTION, **_CLIP, **_FPS, **_CONTINUOUS,
@@ -323,8 +351,9 @@ TOOLS = {tool.name: tool for tool in (
           **_output_of("file to write: .glb, .vrm; with form json .json")},
          ("character", "output"), {"output": _TEXT, "hidden_triangles": _NUMBER, "triangles": _NUMBER,
                                    "hidden_area_percent": _NUMBER, "text": _TEXT}, _mask, True),
-    Tool("export", "Writes a character's body parts as colliders for an engine or a simulator.",
-         {**_CHARACTER, "to": {**_TEXT, "description": "format", "enum": [
+    Tool("export", "Writes a character's body parts as colliders for an engine or a simulator. MJCF and URDF get a CSV file with the "
+         "joint angles of each clip.",
+         {**_CHARACTER, **_MOTION, "to": {**_TEXT, "description": "format", "enum": [
              "capsules.json", "vrm", "khr", "omi", "mjcf", "urdf", "xrdf", "curobo", "usd", "godot", "unity", "unreal"]},
           "volumes": {**_TEXT, "description": "shape (the best that the format holds)",
                       "enum": ["spheres", "cones", "capsules", "ellipsoids", "boxes"]},

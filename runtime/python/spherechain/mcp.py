@@ -198,7 +198,8 @@ class Server:
             check_arguments(TOOLS[name], arguments)
             structured, pictures = TOOLS[name].run(call, arguments)
             content: List[Dict[str, Any]] = [{"type": "text", "text": json.dumps(structured, indent=1)}]
-            content += [{"type": "image", "data": picture, "mimeType": "image/png"} for picture in pictures]
+            for caption, picture in pictures:
+                content += [{"type": "text", "text": caption}, {"type": "image", "data": picture, "mimeType": "image/png"}]
             result = {"content": content, "structuredContent": structured, "isError": False}
         except (Refused, ToolError, OSError) as error:
             result = {"content": [{"type": "text", "text": str(error)}], "isError": True}
