@@ -124,6 +124,7 @@ ordered_json page_clip(const EvaluatedClip& clip) {
   for (const EvaluatedEvent& evaluated : clip.events) {
     if (is_on_page(evaluated)) {
       events.push_back(page_event(evaluated));
+      if (evaluated.event.picture > 0) events.back()["picture"] = evaluated.event.picture;  // its file's number
     } else {
       ++minor;
     }

@@ -150,24 +150,6 @@ class Server(unittest.TestCase):
         result = self.call("export", character="arm.urdf", motion="still.csv", to="mjcf", output="arm.xml")
         self.assertEqual(result["structuredContent"]["files"], ["arm.still.mjcf.csv", "arm.xml"])
 
-    def test_a_caption_names_no_frame_that_is_not_certain(self):
-        events = [{"parts": ["a", "b"], "text": "a in b", "class": "penetration", "deepest": 9 * depth, "depth_mm": depth}
-                  for depth in (2, 3, 1)]
-        row = {"character": "man.glb", "clip": "walk", "data": "data/x", "picture": "data/x_2.png", "events": events}
-        tickets = [{"picture": "data/x_2.png", "events": [[0, 1]]}, {"picture": "data/x_1.png", "events": [[0, 0]]},
-                   {"picture": "data/x.png", "events": [[0, 2]]}]
-        (self.root / "data").mkdir()
-        for name in ("x", "x_1", "x_2"):
-            (self.root / f"data/{name}.png").write_bytes(b"")
-        (self.root / "library.js").write_text("spherechain.library = " + json.dumps({"tickets": tickets, "rows": [row]}))
-        captions = ["man.glb walk, frame 27: a in b, penetration, 3.0 mm", "man.glb walk: a in b, or another fault",
-                    "man.glb walk, the first frame: no fault is marked"]
-        self.assertEqual([caption for caption, _ in pictures(self.root)], captions)
-        self.assertEqual([caption for caption, _ in pictures(self.root, "walk")], captions[:1])
-        events[0]["depth_mm"] = 3
-        (self.root / "library.js").write_text(json.dumps({"tickets": tickets, "rows": [row]}))
-        self.assertEqual([caption for caption, _ in pictures(self.root, "walk")], captions[1:2])
-
     def test_says_how_far_each_mended_event_changes_the_pose(self):
         acting = {"from": 50, "to": 60, "verdict": "changes_pose", "moves_mm": {"upper": 80.0}, "step_percent": 0.1}
         event = {"parts": ["upper", "base"], "from": 55, "to": 60, "outcome": "cleared", "acting": acting}

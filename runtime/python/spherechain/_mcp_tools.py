@@ -141,13 +141,12 @@ def _motion(call: "Call", arguments: Dict[str, Any]) -> List[str]:
     return ["--motion", _input(call, arguments["motion"])] if "motion" in arguments else []
 
 
-def _caption(row: Dict[str, Any], file: str, fault: Dict[str, Any], is_sure: bool) -> str:
+def _caption(row: Dict[str, Any], file: str) -> str:
     """Says what a picture of a clip shows. Only the name of a picture of a fault ends in a number."""
-    name = f"{row['character']} {row['clip']}"
-    if re.search(r"_\d+\.png$", file) is None:
+    name, number = f"{row['character']} {row['clip']}", re.search(r"_(\d+)\.png$", file)
+    if number is None:
         return f"{name}, the first frame: no fault is marked" if row["events"] else f"{name}, no fault: the first frame"
-    if not is_sure:
-        return f"{name}: {fault['text']}, or another fault"
+    fault = next(event for event in row["events"] if event.get("picture") == int(number[1]))
     return f"{name}, frame {fault['deepest']:g}: {fault['text']}, {fault['class']}, {fault['depth_mm']:.1f} mm"
 
 
@@ -155,27 +154,12 @@ def _pictures(folder: Path, clip: Optional[str] = None) -> List[Picture]:
     """The pictures of a check's worst tickets, or of a clip; without a fault of the first frame."""
     text = (folder / "library.js").read_text(encoding="utf-8")
     report = json.loads(text[text.index("{"):text.rindex("}") + 1])
-    rows, captions = report["rows"], {}
-    for ticket in report["tickets"] if clip is None else []:
-        # The picture shows the worst fault of the ticket that is drawn. Of each two parts and class in a clip, the most severe
-        # and the deepest fault are drawn.
-        file, (c, e) = ticket["picture"], ticket["events"][0]
-        row = next(rows[other] for other, _ in ticket["events"] if file.startswith(rows[other]["data"]))
-        worst = rows[c]["events"][e]
-        alike = [(i, event) for i, event in enumerate(rows[c]["events"])
-                 if i != e and (event["parts"], event["class"]) == (worst["parts"], worst["class"])]
-        is_sure = (all([c, i] in ticket["events"] for i, _ in alike) or
-                   all(event["depth_mm"] < worst["depth_mm"] for _, event in alike))
-        captions.setdefault(file, _caption(row, file, worst, is_sure))
-    for row in rows if not captions else []:
-        if "picture" in row and clip in (None, row["clip"]):
-            faults = [event for event in row["events"] if event["class"] in FAULTS and "rule" not in event]
-            badness = [(FAULTS.index(event["class"]), event["depth_mm"]) for event in faults]
-            worst = faults[badness.index(max(badness))] if faults else {}
-            is_sure = badness.count(max(badness, default=())) == 1
-            captions.setdefault(row["picture"], _caption(row, row["picture"], worst, is_sure))
-    known = [file for file in captions if (folder / file).is_file()][:_PICTURES_MAX]
-    return [(captions[file], base64.b64encode((folder / file).read_bytes()).decode()) for file in known]
+    rows = [row for row in report["rows"] if "picture" in row and clip in (None, row["clip"])]
+    files = [ticket["picture"] for ticket in report["tickets"]] if clip is None else []
+    files = list(dict.fromkeys(files or [row["picture"] for row in rows]))
+    known = [file for file in files if (folder / file).is_file()][:_PICTURES_MAX]
+    return [(_caption(next(row for row in rows if file.startswith(row["data"])), file),
+             base64.b64encode((folder / file).read_bytes()).decode()) for file in known]
 
 
 def _pictures_of(call: "Call", character: str, *options: str, clip: Optional[str] = None) -> List[Picture]:
