@@ -13,7 +13,6 @@ import unittest
 import zlib
 from pathlib import Path
 
-from spherechain._mcp_tools import _pictures as pictures
 
 TOOL = os.environ.get("SPHERECHAIN_TOOL") or shutil.which("spherechain")
 # A base, a lower arm and an upper arm, which folds onto the base.
