@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Tries the README's two commands in a bare Debian, on a clean clone of what is committed: shows whether scripts/packages.txt lists
-# all. `scripts/try_bare.sh bookworm` (Debian 12) or `trixie` (13), as root, takes hours; `scripts/try_bare.sh SUITE COMMAND...` tries
+# all. `scripts/try_bare.sh bookworm` (Debian 12) or `trixie` (13), as root, takes an hour; `scripts/try_bare.sh SUITE COMMAND...` tries
 # other commands, each one word for a shell in the clone. The clone stays in build/bare-debian-SUITE-run/try until the next run.
 set -euo pipefail
 cd "$(dirname "$0")/.."
