@@ -27,6 +27,7 @@ std::vector<std::string> draw_events(const AnimatedAsset& animated, const ClipFr
   };
   picture.pose(animated.positions(animated.deformation(clip.first)));
   out.push_back(picture.png(nullptr, picture.forward()));
+  // No event has an eye yet, so severity() counts all alike for it.
   struct Shown {
     const Event *deepest = nullptr, *worst = nullptr;
   };

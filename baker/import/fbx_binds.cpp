@@ -2,6 +2,7 @@
 #include "baker/import/fbx_binds.h"
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 

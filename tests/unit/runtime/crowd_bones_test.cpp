@@ -137,7 +137,7 @@ void check_last_bits(const Shape& shape) {
   const auto count = static_cast<std::uint32_t>(crowd.sphere_count);
   std::mt19937 random(5);
   std::size_t limit_count = 0;
-  for (std::size_t sample = 0; sample < 48; ++sample) {
+  for (std::size_t sample = 0; sample < 120; ++sample) {
     const auto instance = static_cast<std::uint32_t>(sample * 7 % kInstances);
     const auto b = static_cast<std::uint32_t>(1 + random() % (count - 1));
     const Pair pair{static_cast<std::uint32_t>(random() % b), b};
@@ -166,7 +166,7 @@ void check_last_bits(const Shape& shape) {
       CHECK(found_at[0][i] + found_at[1][i] == 1);
     }
   }
-  CHECK(limit_count > 8);
+  CHECK(limit_count > 20);
 }
 
 }  // namespace

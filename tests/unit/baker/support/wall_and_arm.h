@@ -14,7 +14,7 @@ int mesh_of(Glb& glb, const Shape& shape, double x, double y);
 
 // A wall, and on it an arm that is stretched out at rest. In the clip "swing" it hangs down beside the wall, and would
 // be as far from it as the margin if it hung straight; in each frame it is turned so many degrees towards the wall.
-// In each more clip of that name it is turned by one more.
+// Each further clip has the same name, and turns it by one degree more.
 std::string wall_and_arm(const std::vector<double>& degrees, int clips = 1);
 
 // The same motion as a BVH recording of the same joints, 30 frames a second. As a hinge the arm turns about
